@@ -1,0 +1,61 @@
+#include "engine/device.hpp"
+
+#include <fmt/format.h>
+
+namespace cowgpu::engine {
+
+Device::Device(std::shared_ptr<Instance> instance, const PhysicalDevice& physical)
+    : instance_(std::move(instance)), physical_(physical), name_(physical.properties.deviceName) {
+  if (!physical.usable())
+    throw Error(Failure::no_fp64, 0,
+                fmt::format("the device {} lacks double precision, subgroup shuffles or a compute queue", name_));
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+  queue.queueFamilyIndex = std::uint32_t(physical.queue_family);
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkPhysicalDeviceFeatures features{};
+  features.shaderFloat64 = VK_TRUE;
+  VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.pEnabledFeatures = &features;
+  check(vkCreateDevice(physical.handle, &info, nullptr, &handle_), "open the device");
+  volkLoadDevice(handle_);
+  vkGetDeviceQueue(handle_, std::uint32_t(physical.queue_family), 0, &queue_);
+  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  pool.queueFamilyIndex = std::uint32_t(physical.queue_family);
+  const VkResult result = vkCreateCommandPool(handle_, &pool, nullptr, &command_pool_);
+  if (result != VK_SUCCESS) {
+    vkDestroyDevice(handle_, nullptr);
+    check(result, "make a command pool");
+  }
+}
+
+Device::~Device() {
+  vkDestroyCommandPool(handle_, command_pool_, nullptr);
+  vkDestroyDevice(handle_, nullptr);
+}
+
+void Device::check(VkResult result, const std::string& what) {
+  if (result == VK_SUCCESS) return;
+  lost_ = lost_ || result == VK_ERROR_DEVICE_LOST;
+  const Failure failure = lost_ ? Failure::device_lost : Failure::vulkan;
+  throw Error(failure, result,
+              fmt::format("the device {} could not {}: {}; try --device cpu{}", name_, what, describe_result(result),
+                          lost_ ? "; the device is lost and nothing more is run on it" : ""));
+}
+
+void Device::check_alive() const {
+  if (lost_)
+    throw Error(Failure::device_lost, VK_ERROR_DEVICE_LOST,
+                fmt::format("the device {} was lost earlier; nothing more is run on it; try --device cpu", name_));
+}
+
+int Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {
+  for (std::uint32_t i = 0; i < physical_.memory.memoryTypeCount; ++i)
+    if ((allowed >> i & 1U) && (physical_.memory.memoryTypes[i].propertyFlags & wanted) == wanted) return int(i);
+  return -1;
+}
+
+} // namespace cowgpu::engine

@@ -1,0 +1,63 @@
+// A logical device with one compute queue.
+#pragma once
+
+#include "engine/instance.hpp"
+
+#include <map>
+#include <memory>
+#include <string>
+
+namespace cowgpu::engine {
+
+/// Time the device spent in each kernel, from timestamps around its dispatches.
+struct Profile {
+  struct Entry {
+    std::uint64_t dispatches = 0;
+    double seconds = 0;
+  };
+  std::map<std::string, Entry> kernels;
+};
+
+/// Owns the VkDevice. Once the device is lost every further call throws Error(device_lost).
+class Device {
+public:
+  /// Throws Error(no_fp64) for a device that cannot compute here, Error(vulkan).
+  Device(std::shared_ptr<Instance> instance, const PhysicalDevice& physical);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkDevice handle() const { return handle_; }
+  VkQueue queue() const { return queue_; }
+  VkCommandPool command_pool() const { return command_pool_; }
+  const PhysicalDevice& physical() const { return physical_; }
+  const VkPhysicalDeviceLimits& limits() const { return physical_.properties.limits; }
+  const std::string& name() const { return name_; }
+  bool software() const { return physical_.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  Profile& profile() { return profile_; }
+  ValidationLog& log() { return instance_->log(); }
+
+  /// Bytes one shader binding may span.
+  std::uint64_t largest_range() const { return limits().maxStorageBufferRange; }
+
+  /// Throws unless `result` is VK_SUCCESS; remembers a lost device. `what` is the action.
+  void check(VkResult result, const std::string& what);
+
+  /// Throws Error(device_lost) if the device was lost earlier.
+  void check_alive() const;
+
+  /// A memory type that has all of `wanted`, -1 if there is none among `allowed`.
+  int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
+
+private:
+  std::shared_ptr<Instance> instance_;
+  PhysicalDevice physical_;
+  std::string name_;
+  VkDevice handle_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  VkCommandPool command_pool_ = VK_NULL_HANDLE;
+  Profile profile_;
+  bool lost_ = false;
+};
+
+} // namespace cowgpu::engine

@@ -1,0 +1,107 @@
+// The verbs of the engine. One interface, two implementations: host/cpu and host/gpu.
+#pragma once
+
+#include "host/mesh/raw_mesh.hpp"
+#include "host/monitor.hpp"
+#include "host/spectrum/coefficients.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cowgpu {
+
+/// Default of MomentProblem::cut_off: what is left out is bounded by a tenth of a double's rounding unit.
+inline constexpr double default_cut_off = 1e-17;
+
+/// Largest degree the recursions are proven free of overflow for.
+inline constexpr int largest_degree = 4096;
+
+/// Input of the verb `moments`.
+struct MomentProblem {
+  std::span<const Vec3> vertices; ///< mesh coordinates
+  std::span<const Face> faces;    ///< the surface's faces, or any part of them (moments add)
+  Vec3 origin = Vec3::Zero();     ///< mesh coordinates
+  double reference_radius = 1;    ///< R > 0, at least the distance of every vertex used from `origin`
+  double density = 1;             ///< mass per cubed length unit
+  int lmax = 0;                   ///< 0 ... largest_degree
+  double cut_off = default_cut_off; ///< allowed error per degree, relative to degree_bound(); 0: leave out only what
+                                    ///< would underflow
+};
+
+/// What a device is and can do, in words and plain numbers.
+struct DeviceFacts {
+  std::string name;         ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string type;         ///< "discrete", "integrated", "virtual", "software", "cpu" or "other"
+  std::string driver;       ///< name and version of the driver, or the instruction set
+  std::string api;          ///< "Vulkan 1.3.230", "native"
+  bool fp64 = true;
+  std::uint32_t subgroup = 1;      ///< lanes that run in step
+  std::uint64_t memory = 0;        ///< bytes of the largest device-local heap (0: not known)
+  std::uint64_t largest_buffer = 0; ///< bytes one shader binding may span (0: no limit)
+  std::uint32_t shared_memory = 0; ///< bytes of memory shared by a workgroup
+  unsigned threads = 1;            ///< of the CPU path
+};
+
+/// Time one kernel took on a device, summed over its dispatches.
+struct KernelTime {
+  std::string kernel;
+  std::uint64_t dispatches = 0;
+  double seconds = 0;
+};
+
+/// What a verb did, beside its result.
+struct RunReport {
+  double seconds = 0;          ///< wall time of the verb
+  double setup_seconds = 0;    ///< of that: planning, pairing, sorting on the host
+  double elements = 0;         ///< (l, m) entries evaluated, summed over pairs of triangles
+  double full_elements = 0;    ///< the same without the cut-off
+  std::uint64_t pairs = 0;     ///< pairs (and leftover single triangles) of the plan
+  std::vector<KernelTime> kernels; ///< empty on the CPU path
+};
+
+/// Memory a verb needs, for --dry-run: bytes on the host, bytes on the device.
+struct MemoryNeed {
+  std::uint64_t host = 0;
+  std::uint64_t device = 0;
+};
+
+/// An engine: the CPU, or one Vulkan device.
+class Backend {
+public:
+  virtual ~Backend() = default;
+  virtual const DeviceFacts& facts() const = 0;
+
+  /// Exact multipole moments of the signed tetrahedra (origin, face): shared/plan in host/plan/moments.hpp. Throws
+  /// Error(bad_argument) for a problem out of range, too_large, device_failed, device_lost, interrupted. The same problem
+  /// on the same device gives the same bits.
+  virtual Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report = nullptr) = 0;
+
+  /// Upper bound of the memory moments() allocates beside its input and its result.
+  virtual MemoryNeed moments_memory(const MomentProblem& problem) const = 0;
+
+  /// Measured multiply-add peak of double precision, in flops per second (a multiply-add counts two).
+  virtual double measured_peak() = 0;
+};
+
+/// The CPU path on `threads` threads (0: all).
+std::unique_ptr<Backend> make_cpu_backend(unsigned threads = 0);
+
+/// Options of the Vulkan path.
+struct GpuOptions {
+  std::string device = "auto";  ///< "auto", an index of list_gpus(), or a part of a device's name
+  bool validation = false;      ///< core and synchronisation validation; messages are counted
+  std::uint64_t state_budget = std::uint64_t(512) << 20; ///< bytes of recursion state kept on the device at once
+  std::uint32_t iteration_budget = 60000; ///< loop iterations one invocation may run in a dispatch
+};
+
+/// The Vulkan path. Throws Error(no_loader, no_device, no_fp64, device_failed).
+std::unique_ptr<Backend> make_gpu_backend(const GpuOptions& options);
+
+/// The Vulkan devices of this machine, best first: discrete, integrated, virtual, software. Empty where there is no
+/// loader or no device; `reason` then says why.
+std::vector<DeviceFacts> list_gpus(std::string* reason = nullptr);
+
+} // namespace cowgpu

@@ -1,0 +1,317 @@
+#include "host/io/off.hpp"
+
+#include "host/error.hpp"
+#include "host/io/sha256.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace cowgpu {
+namespace {
+
+constexpr std::uint64_t max_count = 0xffffffff;
+constexpr std::size_t min_vertex_bytes = 6; // "0 0 0\n"
+constexpr std::size_t min_face_bytes = 8;   // "3 0 0 0\n"
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+bool is_line_end(char c) {
+  return c == '\n' || c == '\r';
+}
+
+/// Cuts text into words and counts lines. A word's line is line() until the next call.
+class Scanner {
+public:
+  explicit Scanner(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
+
+  std::size_t line() const { return line_; }
+  std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
+
+  /// The next word, on this line or below; empty at the end of the file.
+  std::string_view word() {
+    skip_blanks();
+    while (at_ != end_ && is_line_end(*at_)) {
+      if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
+      ++at_;
+      ++line_;
+      skip_blanks();
+    }
+    return take();
+  }
+
+  /// The next word of this line; empty at the line's end.
+  std::string_view word_on_line() {
+    skip_blanks();
+    return take();
+  }
+
+  void skip_line() {
+    while (at_ != end_ && !is_line_end(*at_)) ++at_;
+  }
+
+  /// Gives back the last `count` characters of the word just taken.
+  void put_back(std::size_t count) { at_ -= count; }
+
+private:
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+    if (at_ != end_ && *at_ == '#') skip_line();
+  }
+
+  std::string_view take() {
+    const char* begin = at_;
+    while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && *at_ != '#') ++at_;
+    return {begin, static_cast<std::size_t>(at_ - begin)};
+  }
+
+  const char* at_;
+  const char* end_;
+  std::size_t line_ = 1;
+};
+
+/// A word fit for a message: printable and short.
+std::string shown(std::string_view word) {
+  std::string text(word.substr(0, 24));
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return word.size() > text.size() ? text + "..." : text;
+}
+
+/// from_chars knows no plus sign.
+std::string_view without_plus(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
+  return word;
+}
+
+template <class Number>
+std::from_chars_result read(std::string_view word, Number& value) {
+  return std::from_chars(word.data(), word.data() + word.size(), value);
+}
+
+/// The word as a double; numbers beyond double's range become 0 or infinity. Empty if the word is no number.
+std::optional<double> to_number(std::string_view word) {
+  word = without_plus(word);
+  double value = 0;
+  auto result = read(word, value);
+  if (result.ec == std::errc::result_out_of_range) {
+    long double wide = 0;
+    result = read(word, wide);
+    if (std::fabs(wide) > std::numeric_limits<double>::max()) wide = std::copysign(HUGE_VALL, wide);
+    value = static_cast<double>(wide);
+  }
+  if (result.ec != std::errc() || result.ptr != word.data() + word.size()) return {};
+  return value;
+}
+
+/// The word as an integer, held at the ends of the range if beyond it. Empty if the word is no integer.
+std::optional<std::int64_t> to_integer(std::string_view word) {
+  word = without_plus(word);
+  std::int64_t value = 0;
+  const auto result = read(word, value);
+  if (result.ptr != word.data() + word.size()) return {};
+  if (result.ec == std::errc::result_out_of_range)
+    return word[0] == '-' ? std::numeric_limits<std::int64_t>::min() : std::numeric_limits<std::int64_t>::max();
+  if (result.ec != std::errc()) return {};
+  return value;
+}
+
+class OffParser {
+public:
+  OffParser(std::string_view text, const std::string& name) : scan_(text) { mesh_.name = name; }
+
+  RawMesh parse() {
+    header();
+    counts();
+    vertices();
+    faces();
+    rest();
+    return std::move(mesh_);
+  }
+
+private:
+  [[noreturn]] void fail(Fault fault, const std::string& sentence) const {
+    throw Error(fault, fmt::format("{}:{}: {}", mesh_.name, scan_.line(), sentence));
+  }
+
+  [[noreturn]] void ended() const {
+    fail(Fault::file_truncated,
+         fmt::format("the file ends after {} of {} vertices and {} of {} faces. It was cut off, or "
+                     "the counts at its top are wrong; fetch or export it again.",
+                     vertices_found_, vertex_count_, faces_found_, face_count_));
+  }
+
+  std::string hint() const {
+    if (!long_vertex_lines_) return "";
+    return " The vertex lines hold more than three numbers; for colours or normals the header must be COFF or NOFF.";
+  }
+
+  [[noreturn]] void not_a_number(const std::string& what, std::string_view word) const {
+    fail(Fault::file_syntax, fmt::format("{} expected, found '{}'.{}", what, shown(word), hint()));
+  }
+
+  void header() {
+    const std::string_view word = scan_.word();
+    if (word.empty()) fail(Fault::file_truncated, "the file is empty. Fetch or export it again.");
+    std::size_t i = 0;
+    for (; i < word.size(); ++i) {
+      if (word[i] == 'C' && !colours_)
+        colours_ = true;
+      else if (word[i] == 'N' && !normals_)
+        normals_ = true;
+      else if (word.substr(i, 2) == "ST" && !texture_)
+        texture_ = true, ++i;
+      else
+        break;
+    }
+    const std::string_view kind = word.substr(i);
+    if (kind.starts_with("4OFF") || kind.starts_with("nOFF") || kind.starts_with("4nOFF"))
+      fail(Fault::file_format, fmt::format("'{}' holds points of other than three coordinates. Export the surface as "
+                                           "plain OFF.",
+                                           shown(word)));
+    const bool off = kind.starts_with("OFF");
+    // Some collections glue the first count to the header: "OFF490 518 0".
+    const bool glued = off && kind.size() > 3 &&
+                       std::all_of(kind.begin() + 3, kind.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (!off || (kind.size() > 3 && !glued)) {
+      const bool wide = word.starts_with("\xff\xfe") || word.starts_with("\xfe\xff");
+      fail(Fault::file_format,
+           wide ? "the file is UTF-16 text. Save it as UTF-8 or ASCII."
+                : fmt::format(
+                      "this is no OFF file: it begins with '{}' where the word OFF belongs. Export the mesh as OFF "
+                      "(MeshLab, Blender and meshio do), or add the header if it is missing.",
+                      shown(word)));
+    }
+    if (glued) scan_.put_back(kind.size() - 3);
+  }
+
+  std::uint64_t count(const char* what, std::string_view word) const {
+    const auto value = to_integer(word);
+    if (!value) not_a_number(fmt::format("the number of {}", what), word);
+    if (*value < 0 || static_cast<std::uint64_t>(*value) > max_count)
+      fail(Fault::file_syntax,
+           fmt::format("'{}' {} are announced; from 0 to {} are possible.", shown(word), what, max_count));
+    return static_cast<std::uint64_t>(*value);
+  }
+
+  void counts() {
+    std::string_view word = scan_.word();
+    if (word == "BINARY") fail(Fault::file_format, "binary OFF is not read. Export the mesh as ASCII OFF.");
+    if (word.empty()) fail(Fault::file_truncated, "the file ends before the numbers of vertices and faces.");
+    vertex_count_ = count("vertices", word);
+    word = scan_.word();
+    if (word.empty()) fail(Fault::file_truncated, "the file ends before the number of faces.");
+    face_count_ = count("faces", word);
+    scan_.word_on_line(); // edges: often 0 or missing
+  }
+
+  void vertices() {
+    // What the file cannot hold is not reserved: a header may promise anything.
+    mesh_.vertices.reserve(std::min<std::size_t>(vertex_count_, scan_.left() / min_vertex_bytes + 1));
+    const int extra_min = 3 * normals_ + 3 * colours_ + 2 * texture_;
+    const int extra_max = extra_min + colours_;
+    for (; vertices_found_ < vertex_count_; ++vertices_found_) {
+      Vec3 p;
+      for (int i = 0; i < 3; ++i) {
+        const std::string_view word = scan_.word();
+        if (word.empty()) ended();
+        const auto value = to_number(word);
+        if (!value) not_a_number(fmt::format("a coordinate of vertex {}", vertices_found_), word);
+        p[i] = *value;
+        if (i == 0 && vertices_found_ == 1 && extra_max == 0) long_vertex_lines_ = scan_.line() == last_vertex_line_;
+      }
+      last_vertex_line_ = scan_.line();
+      if (extra_max != 0) skip_extras(extra_min, extra_max);
+      mesh_.vertices.push_back(p);
+    }
+    if (extra_max != 0 && vertex_count_ != 0)
+      mesh_.notes.push_back("Normals, colours and texture positions of the vertices were skipped.");
+  }
+
+  void skip_extras(int least, int most) {
+    int found = 0;
+    for (std::string_view word = scan_.word_on_line(); !word.empty(); word = scan_.word_on_line(), ++found)
+      if (!to_number(word)) not_a_number("a number of a normal, colour or texture position", word);
+    if (found >= least && found <= most) return;
+    if (found < least && scan_.left() == 0) ended();
+    fail(Fault::file_syntax,
+         fmt::format("vertex {} has {} numbers after its coordinates; the header asks for {}{}.", vertices_found_,
+                     found, least, most > least ? fmt::format(" or {}", most) : ""));
+  }
+
+  std::uint32_t corner() {
+    const std::string_view word = scan_.word();
+    if (word.empty()) ended();
+    const auto value = to_integer(word);
+    if (!value) not_a_number(fmt::format("a vertex of face {}", faces_found_), word);
+    if (*value < 0 || static_cast<std::uint64_t>(*value) >= vertex_count_)
+      fail(Fault::mesh_index_range,
+           fmt::format("face {} names vertex {}, but there are {} vertices, numbered from 0. Export the mesh again.",
+                       faces_found_, shown(word), vertex_count_));
+    return static_cast<std::uint32_t>(*value);
+  }
+
+  void faces() {
+    const std::size_t room = std::min<std::size_t>(face_count_, scan_.left() / min_face_bytes + 1);
+    mesh_.faces.reserve(room);
+    mesh_.face_lines.reserve(room);
+    std::uint64_t polygons = 0;
+    for (; faces_found_ < face_count_; ++faces_found_) {
+      const std::string_view word = scan_.word();
+      if (word.empty()) ended();
+      const auto corners = to_integer(word);
+      if (!corners) not_a_number(fmt::format("the number of corners of face {}", faces_found_), word);
+      if (*corners < 3)
+        fail(Fault::file_syntax,
+             fmt::format("face {} has {} corners; a face needs 3. Remove points and lines from the mesh.{}",
+                         faces_found_, *corners, hint()));
+      // Every corner takes a blank and a digit.
+      if (static_cast<std::uint64_t>(*corners) > scan_.left() / 2) ended();
+      const auto line = static_cast<std::uint32_t>(std::min<std::uint64_t>(scan_.line(), max_count));
+      const std::uint32_t first = corner();
+      std::uint32_t previous = corner();
+      for (std::int64_t i = 2; i < *corners; ++i) {
+        const std::uint32_t next = corner();
+        mesh_.faces.push_back({first, previous, next});
+        mesh_.face_lines.push_back(line);
+        previous = next;
+      }
+      polygons += *corners > 3;
+      scan_.skip_line(); // the face's colour
+    }
+    if (polygons != 0)
+      mesh_.notes.push_back(
+          fmt::format("{} {} of more than three corners {} cut into triangles, fans from the first corner.", polygons,
+                      polygons == 1 ? "polygon" : "polygons", polygons == 1 ? "was" : "were"));
+  }
+
+  void rest() {
+    if (!scan_.word().empty())
+      mesh_.notes.push_back(
+          fmt::format("Data after the last announced face were ignored (from line {}).", scan_.line()));
+  }
+
+  Scanner scan_;
+  RawMesh mesh_;
+  bool colours_ = false, normals_ = false, texture_ = false;
+  bool long_vertex_lines_ = false; // several vertices on one line, or colours without a header that says so
+  std::size_t last_vertex_line_ = 0;
+  std::uint64_t vertex_count_ = 0, face_count_ = 0, vertices_found_ = 0, faces_found_ = 0;
+};
+
+} // namespace
+
+RawMesh parse_off(std::string_view bytes, const std::string& name) {
+  std::string_view text = bytes;
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  RawMesh mesh = OffParser(text, name).parse();
+  mesh.sha256 = sha256_hex(bytes);
+  return mesh;
+}
+
+} // namespace cowgpu

@@ -1,0 +1,11 @@
+#include "host/monitor.hpp"
+
+#include "host/error.hpp"
+
+namespace cowgpu {
+
+void check_stop(const Monitor& monitor) {
+  if (monitor.stopped()) throw Error(Fault::interrupted, "interrupted: nothing was written");
+}
+
+} // namespace cowgpu

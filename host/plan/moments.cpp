@@ -1,0 +1,223 @@
+#include "host/plan/moments.hpp"
+
+#include "host/error.hpp"
+#include "host/plan/pairing.hpp"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace cowgpu::plan {
+namespace {
+
+using Extended = long double;
+using ExtendedVec3 = Eigen::Matrix<Extended, 3, 1>;
+
+// Even without a cut-off, groups that would underflow are left out.
+constexpr double smallest_cut_off = 1e-150;
+
+// Column scale 1 is cheaper, but its rows fall like 2^-l at m = l.
+constexpr int largest_degree_unscaled = 1024;
+
+ExtendedVec3 reduced(const MomentProblem& problem, std::uint32_t vertex) {
+  const ExtendedVec3 x = problem.vertices[vertex].cast<Extended>() - problem.origin.cast<Extended>();
+  return x / Extended(problem.reference_radius);
+}
+
+Extended det(const ExtendedVec3& a, const ExtendedVec3& b, const ExtendedVec3& c) {
+  return a.dot((b - a).cross(c - a));
+}
+
+struct Triangle {
+  double weight = 0; // |det|/2
+  double radius = 0;
+};
+
+Triangle measure(const MomentProblem& problem, const Face& face, Extended& determinant) {
+  const std::array<ExtendedVec3, 3> x = {reduced(problem, face[0]), reduced(problem, face[1]), reduced(problem, face[2])};
+  determinant = det(x[0], x[1], x[2]);
+  const Extended largest = std::max({x[0].squaredNorm(), x[1].squaredNorm(), x[2].squaredNorm()});
+  return {double(std::abs(determinant) / 2), double(std::sqrt(largest))};
+}
+
+// sum |det|/2 r^l for every degree. A triangle is dropped from the list once it cannot change the sum any more, which
+// also keeps its power from becoming denormal.
+std::vector<double> radial_sums(std::vector<Triangle> triangles, int lmax) {
+  std::vector<double> sums(std::size_t(lmax) + 1);
+  for (int l = 0; l <= lmax; ++l) {
+    double sum = 0;
+    for (const Triangle& t : triangles) sum += t.weight;
+    sums[std::size_t(l)] = sum;
+    for (Triangle& t : triangles) t.weight *= t.radius;
+    if (l % 16 == 0)
+      std::erase_if(triangles, [&](const Triangle& t) { return t.weight < 1e-40 * sum / double(triangles.size()); });
+  }
+  return sums;
+}
+
+// The last degree at which each group has to be kept: at every degree the smallest terms |det|/2 r^l are left out while
+// their sum stays below `allowed` of that degree. Terms are put in bins by their binary exponent, and a bin is left out
+// whole or not at all.
+std::vector<int> last_degrees(std::vector<Triangle> groups, const std::vector<double>& allowed) {
+  std::vector<int> last(groups.size(), 0);
+  constexpr int bins = 1024;
+  std::vector<double> bin(bins);
+  const auto bin_of = [](double term, double limit) {
+    // Bin 0 holds what is at or above the limit; every further bin half as much; the last one all the rest.
+    return term >= limit ? 0 : std::clamp(1 + std::ilogb(limit) - std::ilogb(term), 1, bins - 1);
+  };
+  for (std::size_t l = 0; l < allowed.size(); ++l) {
+    std::fill(bin.begin(), bin.end(), 0.0);
+    for (const Triangle& g : groups)
+      if (g.weight > 0) bin[std::size_t(bin_of(g.weight, allowed[l]))] += g.weight;
+    int kept = bins; // first bin that may go, counted from the smallest terms
+    double sum = 0;
+    while (kept > 1 && sum + bin[std::size_t(kept - 1)] <= allowed[l]) sum += bin[std::size_t(--kept)];
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (groups[g].weight > 0 && bin_of(groups[g].weight, allowed[l]) < kept) last[g] = int(l);
+      groups[g].weight *= groups[g].radius;
+      if (groups[g].weight < 1e-290) groups[g].weight = 0;
+    }
+  }
+  return last;
+}
+
+TrianglePair make_pair(const MomentProblem& problem, std::uint32_t first, std::uint32_t second, Extended& dets,
+                       std::vector<Triangle>& triangles) {
+  const Face& f = problem.faces[first];
+  Extended det_f = 0, det_g = 0;
+  triangles.push_back(measure(problem, f, det_f));
+  TrianglePair pair;
+  pair.radius = triangles.back().radius;
+  std::array<std::uint32_t, 4> corner = {f[0], f[1], f[2], f[2]};
+  if (second != unpaired) {
+    const Face& g = problem.faces[second];
+    const auto in = [](const Face& face, std::uint32_t v) { return std::find(face.begin(), face.end(), v) != face.end(); };
+    corner[2] = *std::find_if(f.begin(), f.end(), [&](std::uint32_t v) { return !in(g, v); });
+    corner[3] = *std::find_if(g.begin(), g.end(), [&](std::uint32_t v) { return !in(f, v); });
+    int shared = 0;
+    for (const std::uint32_t v : f)
+      if (v != corner[2]) corner[std::size_t(shared++)] = v;
+    triangles.push_back(measure(problem, g, det_g));
+    pair.radius = std::max(pair.radius, triangles.back().radius);
+  }
+  pair.a = reduced(problem, corner[0]).cast<double>();
+  pair.b = reduced(problem, corner[1]).cast<double>();
+  pair.c = reduced(problem, corner[2]).cast<double>();
+  pair.d = reduced(problem, corner[3]).cast<double>();
+  pair.det_c = double(det_f);
+  pair.det_d = double(det_g);
+  dets += det_f + det_g;
+  return pair;
+}
+
+double entries(int degree) { return 0.5 * (degree + 1.0) * (degree + 2.0); }
+
+void check(const MomentProblem& problem) {
+  if (problem.lmax < 0 || problem.lmax > largest_degree)
+    throw Error(Fault::bad_argument,
+                fmt::format("lmax {} is out of range: it must be 0 to {}", problem.lmax, largest_degree));
+  if (!(problem.reference_radius > 0) || !std::isfinite(problem.reference_radius))
+    throw Error(Fault::bad_argument,
+                fmt::format("the reference radius {} must be positive and finite", problem.reference_radius));
+  if (!(problem.cut_off >= 0) || problem.cut_off > 1e-3)
+    throw Error(Fault::bad_argument, fmt::format("the cut-off {} must be 0 to 1e-3", problem.cut_off));
+}
+
+} // namespace
+
+Moments moments(const MomentProblem& problem, int lanes) {
+  check(problem);
+  Moments plan;
+  plan.lmax = problem.lmax;
+  plan.lanes = lanes;
+  plan.column_scale = problem.lmax <= largest_degree_unscaled ? 1 : 2;
+  plan.start_exponent = plan.column_scale == 1 ? 900 : 900 - int(std::ceil(0.323 * problem.lmax));
+
+  Extended dets = 0;
+  std::vector<Triangle> triangles;
+  triangles.reserve(problem.faces.size());
+  std::vector<TrianglePair> found;
+  const auto matched = pair_faces(problem.faces, problem.vertices.size());
+  found.reserve(matched.size());
+  for (const auto& [f, g] : matched) found.push_back(make_pair(problem, f, g, dets, triangles));
+  plan.sum_of_dets = double(dets);
+  plan.pair_count = found.size();
+
+  std::vector<std::uint32_t> order(found.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
+    return found[x].radius != found[y].radius ? found[x].radius > found[y].radius : x < y;
+  });
+  if (!order.empty() && found[order[0]].radius > 1 + 1e-9)
+    throw Error(Fault::bad_argument, fmt::format("the reference radius {} is smaller than the body: a vertex lies at {} of it",
+                                                 problem.reference_radius, found[order[0]].radius));
+
+  const std::size_t groups = (found.size() + std::size_t(lanes) - 1) / std::size_t(lanes);
+  plan.pairs.resize(groups * std::size_t(lanes));
+  std::vector<Triangle> group(groups);
+  for (std::size_t i = 0; i < plan.pairs.size(); ++i) {
+    // Padding repeats the last pair without weight, so that its rows stay in range.
+    TrianglePair pair = found[order[std::min(i, order.size() - 1)]];
+    if (i >= order.size()) pair.det_c = pair.det_d = 0;
+    Triangle& g = group[i / std::size_t(lanes)];
+    g.weight += (std::abs(pair.det_c) + std::abs(pair.det_d)) / 2;
+    g.radius = std::max(g.radius, pair.radius);
+    plan.pairs[i] = pair;
+  }
+
+  std::vector<double> allowed = radial_sums(std::move(triangles), problem.lmax);
+  for (double& a : allowed) a *= std::max(problem.cut_off, smallest_cut_off);
+  plan.last_degree = last_degrees(std::move(group), allowed);
+  for (std::size_t g = 0; g < groups; ++g) plan.elements += lanes * entries(plan.last_degree[g]);
+  plan.full_elements = double(plan.pair_count) * entries(problem.lmax);
+  return plan;
+}
+
+Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums) {
+  Coefficients result;
+  result.lmax = problem.lmax;
+  result.origin = problem.origin;
+  result.reference_radius = problem.reference_radius;
+  result.density = problem.density;
+  result.values.resize(Coefficients::count(problem.lmax));
+
+  std::vector<Extended> root(2 * std::size_t(problem.lmax) + 2), inverse_root(root.size());
+  for (std::size_t n = 1; n < root.size(); ++n) {
+    root[n] = std::sqrt(Extended(n));
+    inverse_root[n] = 1 / root[n];
+  }
+  const Extended r = problem.reference_radius;
+  const Extended unit = std::ldexp(Extended(problem.density) * r * r * r, -plan.start_exponent);
+  for (int l = 0; l <= problem.lmax; ++l) {
+    const Extended degree = l;
+    Extended factor = unit * std::sqrt((2 * degree + 1) / (4 * std::numbers::pi_v<Extended>)) /
+                      ((degree + 1) * (degree + 2) * (degree + 3));
+    for (int m = 0; m <= l; ++m) {
+      const std::size_t i = Coefficients::index(l, m);
+      const Extended im = m == 0 ? 0 : factor * sums[2 * i + 1];
+      result.values[i] = {double(factor * sums[2 * i]), double(im)};
+      if (m < l) factor *= root[std::size_t(l + m + 1)] * inverse_root[std::size_t(l - m)] / plan.column_scale;
+    }
+  }
+  return result;
+}
+
+std::vector<double> degree_bound(const MomentProblem& problem) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(problem.faces.size());
+  Extended unused = 0;
+  for (const Face& face : problem.faces) triangles.push_back(measure(problem, face, unused));
+  std::vector<double> bound = radial_sums(std::move(triangles), problem.lmax);
+  const double unit = problem.density * std::pow(problem.reference_radius, 3);
+  for (std::size_t l = 0; l < bound.size(); ++l)
+    bound[l] *= unit * std::sqrt((2 * double(l) + 1) / (4 * std::numbers::pi)) / (double(l) + 3);
+  return bound;
+}
+
+} // namespace cowgpu::plan

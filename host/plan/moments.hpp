@@ -1,0 +1,72 @@
+// What both fast paths of the stage `moments` do before and after the arithmetic.
+//
+// Mathematics. With x the position divided by R and U_lm = g_lm S_lm, g_lm = s^m l! / (sqrt((2l+1)/4pi)
+// sqrt((l-m)!(l+m)!)), a directional derivative of solid harmonics needs no coefficients but the direction:
+//
+//   (d.D U)_m = d_z U_m + (d_x - i d_y)/(2s) U_{m+1} - s (d_x + i d_y)/2 U_{m-1},    U_{-m} = (-1)^m s^{-2m} conj U_m
+//
+// and the moments of the tetrahedron (0, A, B, C), det = det(A, B, C), follow from three chained recursions
+//
+//   v_l = (C.D) v_{l-1}        v_0 = 1
+//   e_l = (B.D) e_{l-1} + det v_l,    t_l = (A.D) t_{l-1} + e_l,     e_0 = t_0 = det
+//   Q_lm / R^(l+3) = t_l[m] / (g_lm (l+1)(l+2)(l+3))
+//
+// because the integral of the l-th power of a linear form over a tetrahedron is det l!/(l+3)! times the complete
+// homogeneous symmetric polynomial of its values at A, B, C (Lasserre and Avrachenkov 2001, "The multi-dimensional
+// version of int_a^b x^p dx", Theorem 2.1), and S_lm(x) = (x.grad)^l S_lm / l!. v_l[m] is a real number times
+// exp(i m phi_C). Two triangles ABC, ABD that share an edge share e and t and need two rows v.
+//
+// Range. |U_lm| <= g_lm sqrt((l-m)!(l+m)!)/l!-free bound: for |x| <= 1, |U_lm| <= max_m g_lm = O(1) for s = 1 (smallest at
+// m = l: 2^-l) and O(2^(0.33 l)) for s = 2. The rows therefore start at 2^start instead of 1, start chosen so that
+// nothing that matters leaves the range of a double.
+//
+// Cut-off. On the triangle's tetrahedron |S_lm| <= r^l sqrt((2l+1)/4pi), r its largest vertex radius, and by homogeneity
+// the integral of (|x|/r)^l over it is at most 3/(l+3) of its volume |det|/6. So a set D of triangles adds at most
+// sqrt((2l+1)/4pi)/(l+3) sum_D |det|/2 r^l to any Q_lm. Per degree the smallest groups are left out while their sum stays
+// below cut_off times the sum over all triangles: the error is then at most cut_off B_l with B_l of degree_bound().
+#pragma once
+
+#include "host/backend.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace cowgpu::plan {
+
+/// Two triangles (a, b, c) and (b, a, d) sharing the edge a-b, or one triangle with det_d = 0. Coordinates are relative to
+/// the origin, divided by R.
+struct TrianglePair {
+  Vec3 a, b, c, d;
+  double det_c = 0, det_d = 0;
+  double radius = 0; ///< largest vertex radius, <= 1 up to rounding
+};
+
+/// The work of one verb, ready for SIMD groups of `lanes` pairs each.
+struct Moments {
+  int lmax = 0;
+  int lanes = 1;
+  int column_scale = 1;            ///< s above: 1 up to degree 1500, 2 beyond
+  int start_exponent = 0;          ///< rows start at 2^start_exponent
+  std::vector<TrianglePair> pairs; ///< by decreasing radius; padded with empty pairs to a multiple of lanes
+  std::vector<int> last_degree;    ///< of each group: its rows stop there; non-negative, <= lmax
+  double sum_of_dets = 0;          ///< over all triangles, correctly rounded in extended precision
+  std::uint64_t pair_count = 0;    ///< without the padding
+  double elements = 0;             ///< sum over pairs of (L+1)(L+2)/2, L the group's last degree
+  double full_elements = 0;        ///< the same with L = lmax
+
+  std::size_t groups() const { return last_degree.size(); }
+};
+
+/// Pairs, scales, sorts and cuts off. Throws Error(bad_argument) for lmax outside [0, largest_degree], a radius that is
+/// not positive and finite, or a vertex outside it.
+Moments moments(const MomentProblem& problem, int lanes);
+
+/// Turns the sums over all triangles of t_l[m] 2^start_exponent, real and imaginary parts interleaved in the order of
+/// Coefficients, into coefficients.
+Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums);
+
+/// B_l = density R^3 sqrt((2l+1)/4pi)/(l+3) sum |det|/2 r^l for l = 0 ... lmax, in the units of Q_lm / R^l, r and det
+/// taken after division by R: an a-priori bound of |Q_lm / R^l|.
+std::vector<double> degree_bound(const MomentProblem& problem);
+
+} // namespace cowgpu::plan
