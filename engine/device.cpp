@@ -1,6 +1,9 @@
 #include "engine/device.hpp"
 
+#include "engine/kernel.hpp"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace cowgpu::engine {
 
@@ -33,8 +36,15 @@ Device::Device(std::shared_ptr<Instance> instance, const PhysicalDevice& physica
 }
 
 Device::~Device() {
+  kernels_.clear();
   vkDestroyCommandPool(handle_, command_pool_, nullptr);
   vkDestroyDevice(handle_, nullptr);
+}
+
+const Kernel& Device::kernel(const KernelInfo& info) {
+  auto& kept = kernels_[fmt::format("{} {}", info.name, fmt::join(info.constants, " "))];
+  if (!kept) kept = std::make_unique<Kernel>(*this, info);
+  return *kept;
 }
 
 void Device::check(VkResult result, const std::string& what) {

@@ -18,7 +18,10 @@ struct Profile {
   std::map<std::string, Entry> kernels;
 };
 
-/// Owns the VkDevice. Once the device is lost every further call throws Error(device_lost).
+class Kernel;
+struct KernelInfo;
+
+/// Owns the VkDevice and the kernels made on it. Once the device is lost every further call throws Error(device_lost).
 class Device {
 public:
   /// Throws Error(no_fp64) for a device that cannot compute here, Error(vulkan).
@@ -36,6 +39,9 @@ public:
   bool software() const { return physical_.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   Profile& profile() { return profile_; }
   ValidationLog& log() { return instance_->log(); }
+
+  /// The kernel of this name and these constants, made on first use and kept.
+  const Kernel& kernel(const KernelInfo& info);
 
   /// Bytes one shader binding may span.
   std::uint64_t largest_range() const { return limits().maxStorageBufferRange; }
@@ -56,6 +62,7 @@ private:
   VkDevice handle_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
+  std::map<std::string, std::unique_ptr<Kernel>> kernels_;
   Profile profile_;
   bool lost_ = false;
 };

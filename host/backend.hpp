@@ -38,6 +38,7 @@ struct DeviceFacts {
   std::string driver;       ///< name and version of the driver, or the instruction set
   std::string api;          ///< "Vulkan 1.3.230", "native"
   bool fp64 = true;
+  bool usable = true;       ///< has all that cowgpu needs
   std::uint32_t subgroup = 1;      ///< lanes that run in step
   std::uint64_t memory = 0;        ///< bytes of the largest device-local heap (0: not known)
   std::uint64_t largest_buffer = 0; ///< bytes one shader binding may span (0: no limit)
@@ -74,7 +75,7 @@ public:
   virtual ~Backend() = default;
   virtual const DeviceFacts& facts() const = 0;
 
-  /// Exact multipole moments of the signed tetrahedra (origin, face): shared/plan in host/plan/moments.hpp. Throws
+  /// Exact multipole moments of the signed tetrahedra (origin, face): the mathematics stands in host/plan/moments.hpp. Throws
   /// Error(bad_argument) for a problem out of range, too_large, device_failed, device_lost, interrupted. The same problem
   /// on the same device gives the same bits.
   virtual Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report = nullptr) = 0;
@@ -84,6 +85,9 @@ public:
 
   /// Measured multiply-add peak of double precision, in flops per second (a multiply-add counts two).
   virtual double measured_peak() = 0;
+
+  /// What the validation layers said so far; always empty unless GpuOptions::validation.
+  virtual std::vector<std::string> validation_messages() const { return {}; }
 };
 
 /// The CPU path on `threads` threads (0: all).
@@ -93,7 +97,11 @@ std::unique_ptr<Backend> make_cpu_backend(unsigned threads = 0);
 struct GpuOptions {
   std::string device = "auto";  ///< "auto", an index of list_gpus(), or a part of a device's name
   bool validation = false;      ///< core and synchronisation validation; messages are counted
-  std::uint64_t state_budget = std::uint64_t(512) << 20; ///< bytes of recursion state kept on the device at once
+  // The layout of the kernels; 0 and false leave the choice to the kind of device (shaders/moments.comp).
+  std::uint32_t levels = 0;     ///< degrees a sweep advances
+  std::uint32_t workgroups = 0; ///< partial sums; a power of two, at most 64
+  bool rows_in_buffer = false;  ///< recursion rows in device memory
+  std::uint64_t state_budget = std::uint64_t(512) << 20; ///< bytes of recursion rows kept on the device at once
   std::uint32_t iteration_budget = 60000; ///< loop iterations one invocation may run in a dispatch
 };
 

@@ -103,7 +103,7 @@ void main() {
     const int group_last = int(last_degrees[group]);
     const int last = min(group_last, int(push.last_degree));
     const int columns = last + 4 * LEVELS;
-    state_base = (group - push.first_group) * push.state_columns * MOMENTS_ROWS * LANES + lane;
+    state_base = group * push.state_columns * MOMENTS_ROWS * LANES + lane;
 
     // The rows as the last slice left them, and zeros beyond.
     int filled = 0;

@@ -32,8 +32,7 @@ namespace cowgpu::shaders {
 
 struct MomentsPush {
   double start;          // rows start at this power of two
-  uint first_group;      // of the chunk whose state the buffer holds
-  uint begin_group;      // this dispatch works on groups begin ... end-1
+  uint begin_group;      // this dispatch works on groups begin ... end-1, counted from the bound ranges' start
   uint end_group;
   uint first_degree;     // of the slice, 1 or one past the end of the slice before
   uint last_degree;      // of the slice
@@ -45,12 +44,11 @@ struct MomentsSumPush {
   uint size;     // doubles to sum
   uint stride;   // between partial sums
   uint count;    // partial sums
-  uint rows;     // invocations in x times this cover `size`
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(MomentsPush) == 40 && sizeof(MomentsPush) <= 128, "push constants: 128 bytes everywhere");
-static_assert(sizeof(MomentsSumPush) == 16);
+static_assert(sizeof(MomentsPush) == 32 && sizeof(MomentsPush) <= 128, "push constants: 128 bytes everywhere");
+static_assert(sizeof(MomentsSumPush) == 12);
 } // namespace cowgpu::shaders
 #endif
 #endif

@@ -11,9 +11,7 @@ layout(push_constant) uniform Push { MomentsSumPush push; };
 
 void main() {
   const uint width = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint row = 0; row < push.rows; ++row) {
-    const uint i = gl_GlobalInvocationID.x + row * width;
-    if (i >= push.size) return;
+  for (uint i = gl_GlobalInvocationID.x; i < push.size; i += width) {
     double sum = 0;
     for (uint part = 0; part < push.count; ++part) {
       sum += partial[part * push.stride + i];

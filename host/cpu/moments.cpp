@@ -110,10 +110,9 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
 
 std::uint64_t moments_bytes(const MomentProblem& problem, unsigned threads) {
   const PartialLayout layout(problem.lmax);
-  const std::uint64_t plan = std::uint64_t(problem.faces.size()) * 256 + std::uint64_t(problem.vertices.size()) * 8;
   const std::uint64_t sums = 16 * Coefficients::count(problem.lmax);
   const std::uint64_t rows = std::uint64_t(threads) * 640 * (std::uint64_t(problem.lmax) + 48);
-  return plan + partials(layout) * layout.size() * 8 + sums + rows;
+  return plan::bytes(problem) + partials(layout) * layout.size() * 8 + sums + rows;
 }
 
 } // namespace cowgpu::cpu

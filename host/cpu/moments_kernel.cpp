@@ -194,40 +194,17 @@ template <bool Scaled> void sweeps(const Directions& g, int last, double* rows, 
 void AccumulateGroup(const plan::Moments& plan, std::size_t group, const PartialLayout& layout,
                      MomentsWorkspace& workspace, double* partial) {
   const int last = plan.last_degree[group];
-  const plan::TrianglePair* pairs = &plan.pairs[group * lanes];
-  HWY_ALIGN double in[18][lanes];
-  const double half = 0.5 / plan.column_scale;
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const plan::TrianglePair& p = pairs[i];
-    const double c_rho = std::hypot(p.c.x(), p.c.y()), d_rho = std::hypot(p.d.x(), p.d.y());
-    const double values[18] = {p.a.x() * half,
-                               p.a.y() * half,
-                               p.a.z(),
-                               p.b.x() * half,
-                               p.b.y() * half,
-                               p.b.z(),
-                               c_rho * half,
-                               p.c.z(),
-                               d_rho * half,
-                               p.d.z(),
-                               c_rho > 0 ? p.c.x() / c_rho : 1,
-                               c_rho > 0 ? p.c.y() / c_rho : 0,
-                               d_rho > 0 ? p.d.x() / d_rho : 1,
-                               d_rho > 0 ? p.d.y() / d_rho : 0,
-                               p.det_c,
-                               p.det_d,
-                               std::ldexp(p.det_c + p.det_d, plan.start_exponent),
-                               std::ldexp(1.0, plan.start_exponent)};
-    for (std::size_t k = 0; k < 18; ++k) in[k][i] = values[k];
-  }
+  HWY_ALIGN double in[plan::inputs][lanes];
+  plan::lane_inputs(plan, group, in[0]);
   const auto input = [&](std::size_t k) HWY_ATTR { return hn::Load(d, in[k]); };
   const Directions g = {input(0), input(1), input(2), input(3), input(4),
                         input(5), input(6), input(7), input(8), input(9)};
 
   const std::size_t columns = std::size_t(last) + 6 * levels + 4;
   std::memset(workspace.rows.get(), 0, columns * column_doubles * sizeof(double));
-  const V start = input(17), zero = hn::Zero(d);
-  store_column({start, start, input(16), zero, input(16), zero}, workspace.rows.get() + 2 * levels * column_doubles);
+  const V start = hn::Set(d, std::ldexp(1.0, plan.start_exponent)), zero = hn::Zero(d);
+  const V det = hn::Mul(hn::Add(input(14), input(15)), start);
+  store_column({start, start, det, zero, det, zero}, workspace.rows.get() + 2 * levels * column_doubles);
 
   // Phases for columns from m = -2 levels + 1 on. Orders below 0 feed scratch columns only beyond -levels.
   const V c_cos = input(10), c_sin = input(11), d_cos = input(12), d_sin = input(13);

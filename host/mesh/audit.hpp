@@ -1,5 +1,4 @@
-// What there is to say about a mesh before anything is computed from it. Nothing here judges; see ClosedSurface for
-// that.
+// What there is to say about a mesh before anything is computed from it. It judges nothing; ClosedSurface does.
 #pragma once
 
 #include "host/mesh/geometry.hpp"

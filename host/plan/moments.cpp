@@ -179,6 +179,43 @@ Moments moments(const MomentProblem& problem, int lanes) {
   return plan;
 }
 
+void lane_inputs(const Moments& plan, std::size_t group, double* to) {
+  const std::size_t lanes = std::size_t(plan.lanes);
+  const double half = 0.5 / plan.column_scale;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const TrianglePair& p = plan.pairs[group * lanes + lane];
+    const double c_rho = std::hypot(p.c.x(), p.c.y()), d_rho = std::hypot(p.d.x(), p.d.y());
+    const std::array<double, inputs> values = {p.a.x() * half,
+                                               p.a.y() * half,
+                                               p.a.z(),
+                                               p.b.x() * half,
+                                               p.b.y() * half,
+                                               p.b.z(),
+                                               c_rho * half,
+                                               p.c.z(),
+                                               d_rho * half,
+                                               p.d.z(),
+                                               c_rho > 0 ? p.c.x() / c_rho : 1,
+                                               c_rho > 0 ? p.c.y() / c_rho : 0,
+                                               d_rho > 0 ? p.d.x() / d_rho : 1,
+                                               d_rho > 0 ? p.d.y() / d_rho : 0,
+                                               p.det_c,
+                                               p.det_d};
+    for (std::size_t k = 0; k < inputs; ++k) to[k * lanes + lane] = values[k];
+  }
+}
+
+std::vector<double> lane_inputs(const Moments& plan, std::span<const std::uint32_t> order) {
+  const std::size_t group_doubles = inputs * std::size_t(plan.lanes);
+  std::vector<double> all(order.size() * group_doubles);
+  for (std::size_t i = 0; i < order.size(); ++i) lane_inputs(plan, order[i], &all[i * group_doubles]);
+  return all;
+}
+
+std::uint64_t bytes(const MomentProblem& problem) {
+  return std::uint64_t(problem.faces.size()) * 304 + std::uint64_t(problem.vertices.size()) * 8;
+}
+
 Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums) {
   Coefficients result;
   result.lmax = problem.lmax;

@@ -61,6 +61,16 @@ struct Moments {
 /// not positive and finite, or a vertex outside it.
 Moments moments(const MomentProblem& problem, int lanes);
 
+/// Numbers of a pair as SIMD lanes want them: [group][input][lane], groups in the given order. The inputs are those of
+/// shaders/moments.h: directions a and b (x, y over twice the column scale; z), distance from the z axis (over twice the
+/// scale) and z of c and d, cosine and sine of their longitudes, det_c, det_d.
+inline constexpr std::size_t inputs = 16;
+void lane_inputs(const Moments& plan, std::size_t group, double* to);
+std::vector<double> lane_inputs(const Moments& plan, std::span<const std::uint32_t> order);
+
+/// Bound of the bytes moments() allocates: 304 a face and 8 a vertex.
+std::uint64_t bytes(const MomentProblem& problem);
+
 /// Turns the sums over all triangles of t_l[m] 2^start_exponent, real and imaginary parts interleaved in the order of
 /// Coefficients, into coefficients.
 Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums);

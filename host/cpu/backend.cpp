@@ -1,0 +1,55 @@
+// The CPU path: the verbs of host/backend.hpp on this machine's cores.
+#include "host/backend.hpp"
+
+#include "host/cpu/moments.hpp"
+#include "host/cpu/moments_kernel.hpp"
+#include "host/cpu/peak.hpp"
+#include "host/parallel.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace cowgpu {
+namespace {
+
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0)
+      if (const auto colon = line.find(": "); colon != std::string::npos) return line.substr(colon + 2);
+  return "processor";
+}
+
+class CpuBackend final : public Backend {
+public:
+  explicit CpuBackend(unsigned threads) : threads_(threads ? threads : all_threads()) {
+    facts_.name = processor_name();
+    facts_.type = "cpu";
+    facts_.driver = cpu::simd_name();
+    facts_.api = "native";
+    facts_.subgroup = std::uint32_t(cpu::moments_lanes());
+    facts_.memory = std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGE_SIZE));
+    facts_.threads = threads_;
+  }
+
+  const DeviceFacts& facts() const override { return facts_; }
+  Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
+    return cpu::moments(problem, threads_, monitor, report);
+  }
+  MemoryNeed moments_memory(const MomentProblem& problem) const override {
+    return {cpu::moments_bytes(problem, threads_), 0};
+  }
+  double measured_peak() override { return cpu::peak(threads_); }
+
+private:
+  unsigned threads_;
+  DeviceFacts facts_;
+};
+
+} // namespace
+
+std::unique_ptr<Backend> make_cpu_backend(unsigned threads) { return std::make_unique<CpuBackend>(threads); }
+
+} // namespace cowgpu

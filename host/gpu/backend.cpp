@@ -1,0 +1,75 @@
+// The Vulkan path: the verbs of host/backend.hpp on engine/.
+#include "host/backend.hpp"
+
+#include "engine/gpu.hpp"
+#include "engine/kernels/peak.hpp"
+#include "host/gpu/environment.hpp"
+#include "host/gpu/errors.hpp"
+#include "host/gpu/moments.hpp"
+
+namespace cowgpu {
+namespace {
+
+DeviceFacts facts_of(const engine::GpuFacts& gpu) {
+  DeviceFacts facts;
+  facts.name = gpu.name;
+  facts.type = gpu.type;
+  facts.driver = gpu.driver;
+  facts.api = gpu.api;
+  facts.fp64 = gpu.fp64;
+  facts.usable = gpu.usable;
+  facts.subgroup = gpu.subgroup_size;
+  facts.memory = gpu.memory;
+  facts.largest_buffer = gpu.largest_range;
+  facts.shared_memory = gpu.shared_memory;
+  return facts;
+}
+
+class GpuBackend final : public Backend {
+public:
+  explicit GpuBackend(const GpuOptions& options)
+      : gpu_(options.device, options.validation), facts_(facts_of(gpu_.facts())),
+        shape_(engine::moments_shape(gpu_.facts(), gpu::shape_from(options))) {}
+
+  const DeviceFacts& facts() const override { return facts_; }
+
+  Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
+    return gpu::translated([&] { return gpu::moments(gpu_, shape_, problem, monitor, report); });
+  }
+
+  MemoryNeed moments_memory(const MomentProblem& problem) const override {
+    return gpu::moments_memory(gpu_.facts(), shape_, problem);
+  }
+
+  double measured_peak() override {
+    return gpu::translated([&] { return engine::peak(gpu_.device()); });
+  }
+
+  std::vector<std::string> validation_messages() const override { return gpu_.validation_messages(); }
+
+private:
+  engine::Gpu gpu_;
+  DeviceFacts facts_;
+  engine::MomentsShape shape_;
+};
+
+} // namespace
+
+std::unique_ptr<Backend> make_gpu_backend(const GpuOptions& options) {
+  gpu::prepare_environment();
+  return gpu::translated([&] { return std::make_unique<GpuBackend>(options); });
+}
+
+std::vector<DeviceFacts> list_gpus(std::string* reason) {
+  gpu::prepare_environment();
+  std::vector<DeviceFacts> list;
+  try {
+    for (const engine::GpuFacts& gpu : engine::list_gpus()) list.push_back(facts_of(gpu));
+    if (list.empty() && reason) *reason = "there is a Vulkan loader but no device";
+  } catch (const engine::Error& error) {
+    if (reason) *reason = error.what();
+  }
+  return list;
+}
+
+} // namespace cowgpu
