@@ -53,17 +53,20 @@ struct HalfCage {
 /// Both halves as triangles. Quads are cut along the shorter diagonal, alike on both sides.
 RawMesh mirrored(const HalfCage& half) {
   RawMesh mesh;
-  mesh.vertices = half.vertices;
-  std::vector<Index> image(half.vertices.size());
-  for (Index v = 0; v < image.size(); ++v) {
-    image[v] = v;
-    if (half.on_plane(v)) continue;
-    image[v] = static_cast<Index>(mesh.vertices.size());
-    const Vec3& p = half.vertices[v];
-    mesh.vertices.emplace_back(p.x(), p.y(), -p.z());
-  }
+  constexpr Index unused = std::numeric_limits<Index>::max(); // left inside, where a limb straddles the plane
+  std::vector<Index> own(half.vertices.size(), unused), image = own;
+  for (const Quad& quad : half.quads)
+    for (Index v : quad) {
+      if (own[v] != unused) continue;
+      const Vec3& p = half.vertices[v];
+      own[v] = image[v] = static_cast<Index>(mesh.vertices.size());
+      mesh.vertices.push_back(p);
+      if (half.on_plane(v)) continue;
+      image[v] = own[v] + 1;
+      mesh.vertices.emplace_back(p.x(), p.y(), -p.z());
+    }
   auto add = [&](Index a, Index b, Index c) {
-    mesh.faces.push_back({a, b, c});
+    mesh.faces.push_back({own[a], own[b], own[c]});
     mesh.faces.push_back({image[c], image[b], image[a]});
   };
   for (const auto& [a, b, c, d] : half.quads) {
@@ -147,8 +150,8 @@ public:
   Limb(HalfCage& cage, std::vector<std::size_t> patch, std::vector<Corner> corners, const Vec3& u_axis)
       : cage_(cage), patch_(std::move(patch)), corners_(std::move(corners)), u_axis_(u_axis) {}
 
-  /// Pushes the patch to a section and builds the walls. At the plane of symmetry there is no wall: the mirror image of
-  /// the limb goes on there.
+  /// Pushes the patch to a section and builds the walls. Where the section meets the plane of symmetry there is no wall:
+  /// the mirror image of the limb goes on there.
   Limb& grow(const Section& section) {
     const Vec3 along = section.along.normalized();
     const Vec3 u = (u_axis_ - u_axis_.dot(along) * along).normalized();
@@ -162,9 +165,8 @@ public:
     auto after = [&](Index old) {
       return std::find_if(moved.begin(), moved.end(), [&](const auto& m) { return m.first == old; })->second;
     };
-    const std::vector<std::pair<Index, Index>> rim = outline();
-    for (const auto& [a, b] : rim)
-      if (!(cage_.on_plane(a) && cage_.on_plane(b))) cage_.add(Quad{a, b, after(b), after(a)});
+    for (const auto& [a, b] : outline())
+      if (!(cage_.on_plane(after(a)) && cage_.on_plane(after(b)))) cage_.add(Quad{a, b, after(b), after(a)});
     for (std::size_t q : patch_)
       for (Index& vertex : cage_.quads[q]) vertex = after(vertex);
     return *this;
@@ -206,7 +208,7 @@ void emboss(HalfCage& cage, std::size_t quad, const Vec3& at, double radius, dou
 
 /// The rings by name, as the parts need them.
 enum Station : std::size_t {
-  rump, thigh_back, thigh_front, flank, barrel_back, barrel_front, arm_back, arm_front, brisket,
+  rump, thigh_back, thigh_front, flank, barrel, arm_back, arm_front, brisket,
   neck, poll, ears_front, eyes_front, bridge, muzzle, nose
 };
 
@@ -217,15 +219,14 @@ std::vector<Ring> trunk_rings(const CowLengths& l) {
     return Ring{at(top_x, top), at(bottom_x, bottom), width * l.body_width / 2, top_width};
   };
   return {
-      ring(-0.510, -0.485, 0.940, 0.420, 0.56, 1.10), // rump
-      ring(-0.425, -0.425, 1.000, 0.280, 0.80, 1.10), // thigh_back
-      ring(-0.230, -0.240, 1.010, 0.180, 0.90, 1.05), // thigh_front
-      ring(-0.120, -0.130, 0.985, 0.080, 0.96),       // flank
-      ring(-0.010, -0.010, 0.970, -0.03, 1.03, 0.95), // barrel_back
-      ring(0.1300, 0.1200, 0.970, -0.01, 1.02, 0.90), // barrel_front
-      ring(0.2400, 0.2400, 1.000, 0.060, 0.86, 0.80), // arm_back
-      ring(0.3700, 0.4000, 1.020, 0.090, 0.74, 0.72), // arm_front
-      ring(0.4400, 0.5000, 1.010, 0.270, 0.50, 0.80), // brisket
+      ring(-0.510, -0.485, 0.930, 0.420, 0.54, 1.15), // rump
+      ring(-0.425, -0.425, 1.000, 0.260, 0.80, 1.15), // thigh_back
+      ring(-0.230, -0.240, 1.015, 0.160, 0.90, 1.05), // thigh_front
+      ring(-0.120, -0.120, 0.990, 0.060, 0.98, 0.96), // flank
+      ring(0.0600, 0.0500, 0.965, -0.15, 1.09, 0.90), // barrel
+      ring(0.2400, 0.2400, 1.000, 0.000, 0.88, 0.80), // arm_back
+      ring(0.3700, 0.4000, 1.020, 0.040, 0.78, 0.74), // arm_front
+      ring(0.4400, 0.5000, 1.010, 0.210, 0.58, 0.76), // brisket
   };
 }
 
@@ -249,20 +250,20 @@ std::vector<Ring> head_rings(const CowLengths& l) {
                 head.at(bottom_a * l.head_length, bottom * l.head_height), width * l.head_width / 2, top_width};
   };
   return {
-      ring(-0.03, 0.02, 0.00, -0.98, 0.88),       // poll
-      ring(0.17, 0.24, 0.04, -1.02, 1.00, 1.00),  // ears_front
-      ring(0.38, 0.42, 0.02, -0.98, 1.00, 1.00),  // eyes_front
-      ring(0.62, 0.63, -0.10, -0.86, 0.74, 0.90), // bridge
-      ring(0.84, 0.82, -0.10, -0.90, 0.86, 1.00), // muzzle
-      ring(0.99, 0.95, -0.20, -0.88, 0.78, 1.00), // nose
+      ring(-0.03, 0.02, 0.00, -0.98, 0.92),       // poll
+      ring(0.17, 0.24, 0.06, -1.04, 1.02, 1.00),  // ears_front
+      ring(0.38, 0.42, 0.02, -1.00, 1.02, 1.02),  // eyes_front
+      ring(0.62, 0.63, -0.10, -0.84, 0.74, 0.92), // bridge
+      ring(0.84, 0.82, -0.10, -0.92, 0.98, 0.96), // muzzle
+      ring(1.00, 0.95, -0.20, -0.90, 0.92, 0.92), // nose
   };
 }
 
 /// Between brisket and poll, thicker below than a straight loft: the dewlap.
 Ring neck_ring(const Ring& from, const Ring& to, const CowLengths& l) {
   return {(from.top + to.top) / 2 + Vec2(0, 0.01 * l.body_height),
-          (from.bottom + to.bottom) / 2 - Vec2(-0.02, 0.09) * l.body_height, 0.46 * (from.half_width + to.half_width),
-          0.85};
+          (from.bottom + to.bottom) / 2 - Vec2(-0.02, 0.13) * l.body_height, 0.53 * (from.half_width + to.half_width),
+          0.80};
 }
 
 void grow_tail(HalfCage& cage, std::size_t quad, const CowLengths& l) {
@@ -277,9 +278,8 @@ void grow_tail(HalfCage& cage, std::size_t quad, const CowLengths& l) {
   knot(0.03, -0.04, Vec3(-1, 0.2, 0), 0.065, 0.080);
   knot(0.10, 0.00, Vec3(-1, -0.9, 0), 0.045, 0.050);
   knot(0.14, 0.14, Vec3(-0.1, -1, 0), 0.036, 0.034);
-  knot(0.15, 0.40, Vec3(-0.05, -1, 0), 0.032, 0.032);
-  knot(0.16, 0.64, Vec3(0, -1, 0), 0.032, 0.032);
-  knot(0.17, 0.78, Vec3(0, -1, 0), 0.072, 0.072);
+  knot(0.16, 0.52, Vec3(0, -1, 0), 0.032, 0.032);
+  knot(0.17, 0.77, Vec3(0, -1, 0), 0.078, 0.078);
   knot(0.16, 0.92, Vec3(0.1, -1, 0), 0.056, 0.056);
   knot(0.15, 1.02, Vec3(0.1, -1, 0), 0.012, 0.012);
 }
@@ -299,20 +299,18 @@ void grow_leg(HalfCage& cage, std::size_t quad, const CowLengths& l, const std::
 void grow_legs(HalfCage& cage, const Loft& body, const CowLengths& l) {
   grow_leg(cage, body.quads[thigh_back][3], l,
            {
-               {0.0, 1.16, 1.45, 1.15, 0.75},   // thigh
-               {-0.35, 0.84, 1.38, 0.72, 0.58}, // gaskin
-               {-0.62, 0.60, 1.36, 0.60, 0.52}, // hock
-               {-0.45, 0.34, 1.36, 0.46, 0.46}, // cannon
-               {-0.38, 0.16, 1.36, 0.50, 0.52}, // fetlock
-               {-0.18, 0.00, 1.36, 0.70, 0.66}, // hoof
+               {0.15, 1.18, 1.92, 1.40, 0.80},  // thigh
+               {-0.35, 0.86, 1.78, 0.78, 0.64}, // gaskin
+               {-1.00, 0.62, 1.72, 0.64, 0.56}, // hock
+               {-0.72, 0.24, 1.70, 0.48, 0.48}, // cannon
+               {-0.40, 0.00, 1.70, 0.84, 0.80}, // hoof
            });
   grow_leg(cage, body.quads[arm_back][3], l,
            {
-               {-0.10, 1.00, 1.30, 0.85, 0.66}, // upper arm
-               {-0.05, 0.62, 1.25, 0.56, 0.54}, // knee
-               {-0.05, 0.36, 1.25, 0.46, 0.46}, // cannon
-               {0.00, 0.16, 1.25, 0.50, 0.52},  // fetlock
-               {0.16, 0.00, 1.25, 0.70, 0.66},  // hoof
+               {-0.10, 1.00, 1.60, 1.00, 0.78}, // upper arm
+               {0.02, 0.60, 1.52, 0.62, 0.60},  // knee
+               {-0.06, 0.24, 1.50, 0.48, 0.48}, // cannon
+               {0.22, 0.00, 1.50, 0.84, 0.80},  // hoof
            });
 }
 
@@ -327,8 +325,15 @@ void grow_udder(HalfCage& cage, const Loft& body, const CowLengths& l) {
   auto knot = [&](double down, double length, double width) {
     udder.grow({root - down * l.udder_depth * up, -up, length * l.udder_depth, width * l.udder_depth});
   };
-  knot(0.25, 1.20, 0.85);
-  knot(0.95, 1.05, 0.80);
+  knot(0.30, 0.84, 0.56);
+  knot(1.00, 0.84, 0.60);
+  for (std::size_t quarter : {back, front}) {
+    const Vec3 teat = cage.centre(quarter);
+    const double half = 0.15 * l.udder_depth;
+    limb_from_quad(cage, quarter, forward)
+        .grow({teat, -up, half, half})
+        .grow({teat - 0.45 * l.udder_depth * up, -up, 0.8 * half, 0.8 * half});
+  }
 }
 
 void grow_horn(HalfCage& cage, std::size_t quad, const CowLengths& l) {
@@ -339,9 +344,8 @@ void grow_horn(HalfCage& cage, std::size_t quad, const CowLengths& l) {
     horn.grow({root + l.horn_length * (f * forward + u * up + o * right), along, thickness * l.horn_length,
                thickness * l.horn_length});
   };
-  knot(-0.04, 0.08, 0.04, Vec3(0, 0.6, 0.8), 0.17);
-  knot(-0.02, 0.24, 0.32, Vec3(0, 0.5, 1), 0.15);
-  knot(0.04, 0.46, 0.56, Vec3(0.1, 1, 0.6), 0.12);
+  knot(-0.02, 0.18, 0.22, Vec3(0, 0.5, 1), 0.17);
+  knot(0.04, 0.42, 0.55, Vec3(0.1, 0.9, 0.6), 0.13);
   knot(0.10, 0.78, 0.62, Vec3(0.1, 1, 0), 0.085);
   knot(0.14, 1.02, 0.56, Vec3(0.1, 1, -0.2), 0.03);
 }

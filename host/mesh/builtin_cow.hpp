@@ -11,7 +11,7 @@ struct CowLengths {
   double body_height = 0.37;    ///< topline to the deepest point of the belly
   double body_width = 0.35;     ///< of the barrel, where it is widest
   double leg_length = 0.225;    ///< ground to the deepest point of the belly
-  double leg_thickness = 0.066; ///< of the cannon bone
+  double leg_thickness = 0.058; ///< of the cannon bone
   double neck_length = 0.16;    ///< withers to poll
   double head_length = 0.29;    ///< poll to nose
   double head_height = 0.185;   ///< forehead to jaw
@@ -19,7 +19,7 @@ struct CowLengths {
   double horn_length = 0.15;    ///< one horn, along its curve
   double ear_length = 0.14;     ///< one ear
   double tail_length = 0.46;    ///< root to the tip of the tuft
-  double udder_depth = 0.085;   ///< below the belly
+  double udder_depth = 0.095;   ///< below the belly
 };
 
 /// The cage. Cow coordinates: x forward, y up, z = x cross y to the cow's right; the ground is y = 0, the middle of the

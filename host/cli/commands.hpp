@@ -1,0 +1,43 @@
+// The program's subcommands. Each adds itself to the command line; a new one is a file, a line here and one in main.cpp.
+#pragma once
+
+#include "host/backend.hpp"
+#include "host/cli/console.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cowgpu::cli {
+
+/// Options every subcommand has.
+struct Common {
+  std::vector<std::string> command; ///< the command line as typed
+  std::string device = "auto";
+  std::string progress = "auto";
+  unsigned threads = 0;
+  bool quiet = false;
+  int exit_code = 0;
+
+  ProgressStyle style() const { return progress_style(progress, quiet); }
+};
+
+void add_expand(CLI::App& app, Common& common);
+void add_validate(CLI::App& app, Common& common);
+void add_inspect(CLI::App& app, Common& common);
+void add_devices(CLI::App& app, Common& common);
+void add_bench(CLI::App& app, Common& common);
+
+/// Adds --device, --threads, --progress and --quiet.
+void add_common_options(CLI::App& command, Common& common);
+
+/// Opens what --device names: "cpu", or a Vulkan device. "auto" falls back to the CPU path where there is no loader, no
+/// device or no double precision; `note` then says so. Throws Error(no_loader, no_device, no_fp64, device_failed).
+std::unique_ptr<Backend> open_backend(const Common& common, std::string* note);
+
+/// The help text of a MESH argument.
+std::string mesh_help();
+
+} // namespace cowgpu::cli

@@ -1,0 +1,82 @@
+#include "host/cli/console.hpp"
+
+#include "host/error.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+namespace cowgpu::cli {
+
+std::atomic<bool> stop_requested{false};
+
+namespace {
+
+extern "C" void on_signal(int signal) {
+  stop_requested = true;
+  std::signal(signal, SIG_DFL);
+}
+
+[[noreturn]] void stdout_failed() {
+  throw Error(Fault::cannot_write, fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+}
+
+} // namespace
+
+void catch_signals() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void write_stdout(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) stdout_failed();
+}
+
+void flush_stdout() {
+  if (std::fflush(stdout) != 0) stdout_failed();
+}
+
+ProgressStyle progress_style(const std::string& wanted, bool quiet) {
+  if (wanted == "jsonl") return ProgressStyle::jsonl;
+  if (wanted == "none" || quiet || !isatty(STDERR_FILENO)) return ProgressStyle::none;
+  return ProgressStyle::line;
+}
+
+void ConsoleMonitor::progress(const char* what, double fraction) {
+  if (style_ == ProgressStyle::none) return;
+  const auto now = Clock::now();
+  if (what_ != what) {
+    what_ = what;
+    start_ = now;
+  }
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  if (elapsed < 1 || now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
+  const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
+  if (style_ == ProgressStyle::jsonl) {
+    const nlohmann::json line = {{"what", what}, {"fraction", fraction}, {"seconds", elapsed}, {"seconds_left", left}};
+    fmt::print(stderr, "{}\n", line.dump());
+    return;
+  }
+  constexpr int width = 30;
+  const int full = int(width * fraction);
+  fmt::print(stderr, "\r{} [{}{}] {:3.0f} %, {:.0f} s, about {:.0f} s left\033[K", what, std::string(std::size_t(full), '#'),
+             std::string(std::size_t(width - full), ' '), 100 * fraction, elapsed, left);
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void ConsoleMonitor::clear() {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  shown_ = false;
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,65 @@
+#include "host/cli/commands.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace cowgpu::cli {
+namespace {
+
+struct Options {
+  bool json = false;
+};
+
+std::string mebibytes(std::uint64_t bytes) { return fmt::format("{} MiB", bytes >> 20); }
+
+void run(const Options& options) {
+  std::string reason;
+  const std::vector<DeviceFacts> gpus = list_gpus(&reason);
+  const DeviceFacts cpu = make_cpu_backend()->facts();
+  if (options.json) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < gpus.size(); ++i) {
+      const DeviceFacts& d = gpus[i];
+      list.push_back({{"index", i},
+                      {"name", d.name},
+                      {"type", d.type},
+                      {"driver", d.driver},
+                      {"api", d.api},
+                      {"usable", d.usable},
+                      {"fp64", d.fp64},
+                      {"subgroup_size", d.subgroup},
+                      {"memory", d.memory},
+                      {"largest_buffer", d.largest_buffer},
+                      {"shared_memory", d.shared_memory}});
+    }
+    const nlohmann::ordered_json all = {
+        {"vulkan", list},
+        {"reason", reason},
+        {"cpu", {{"name", cpu.name}, {"simd", cpu.driver}, {"threads", cpu.threads}, {"memory", cpu.memory}}}};
+    write_stdout(all.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    return;
+  }
+  for (std::size_t i = 0; i < gpus.size(); ++i) {
+    const DeviceFacts& d = gpus[i];
+    write_stdout(fmt::format("{}: {}\n", i, d.name));
+    write_stdout(fmt::format("   {} device, {}, {}\n", d.type, d.api, d.driver));
+    write_stdout(fmt::format("   double precision {}, subgroups of {}, memory {}, buffers to {}, shared memory {} KiB\n",
+                             d.fp64 ? "yes" : "no", d.subgroup, mebibytes(d.memory), mebibytes(d.largest_buffer),
+                             d.shared_memory >> 10));
+    if (!d.usable) write_stdout("   not usable: cowgpu needs double precision, subgroup shuffles and a compute queue\n");
+  }
+  if (gpus.empty()) write_stdout(fmt::format("no Vulkan device: {}\n", reason));
+  write_stdout(fmt::format("cpu: {}\n   {} thread{}, {}, memory {}\n", cpu.name, cpu.threads, cpu.threads == 1 ? "" : "s",
+                           cpu.driver, mebibytes(cpu.memory)));
+}
+
+} // namespace
+
+void add_devices(CLI::App& app, Common&) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("devices", "List the Vulkan devices and the CPU, and what each can do");
+  command->add_flag("--json", options->json, "As JSON");
+  command->callback([options] { run(*options); });
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,219 @@
+#include "host/cli/commands.hpp"
+
+#include "host/error.hpp"
+#include "host/io/atomic_file.hpp"
+#include "host/io/mesh_source.hpp"
+#include "host/plan/moments.hpp"
+#include "host/report/result.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <ctime>
+
+namespace cowgpu::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::string mesh = "builtin:cow";
+  std::string of = "mass";
+  int lmax = 8;
+  std::string origin = "com";
+  double density = 1;
+  double cut_off = default_cut_off;
+  std::string verify = "sample";
+  std::uint64_t seed = 1;
+  bool json = false;
+  bool dry_run = false;
+  std::vector<std::string> outputs;
+};
+
+constexpr std::uint64_t large_json = std::uint64_t(50) << 20;
+
+class Stopwatch {
+public:
+  double lap() {
+    const auto now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+  double total() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+private:
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+};
+
+OriginChoice parse_origin(const std::string& text) {
+  if (text == "com") return {};
+  if (text == "mesh") return {"mesh", Vec3::Zero()};
+  Vec3 point;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int c = 0; c < 3; ++c) {
+    const auto [next, error] = std::from_chars(at, end, point[c]);
+    const bool comma = next < end && *next == ',';
+    if (error != std::errc() || !std::isfinite(point[c]) || (c < 2 ? !comma : next != end))
+      throw Error(Fault::bad_argument,
+                  fmt::format("--origin {}: it must be com, mesh or three numbers X,Y,Z in mesh coordinates", text));
+    at = next + 1;
+  }
+  return {"given", point};
+}
+
+Verify parse_verify(const std::string& text) {
+  return text == "none" ? Verify::none : text == "full" ? Verify::full : Verify::sample;
+}
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+void check_outputs(const Options& options) {
+  for (const std::string& path : options.outputs)
+    if (!ends_with(path, ".json") && !ends_with(path, ".csv"))
+      throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .json or .csv", path));
+  if (options.of != "mass" && options.of != "all")
+    throw Error(Fault::bad_argument, fmt::format("--of {}: there is no such expansion; there is: mass", options.of));
+}
+
+void check_memory(const MemoryNeed& need, const Backend& backend) {
+  const DeviceFacts cpu = make_cpu_backend(1)->facts();
+  const bool shared = backend.facts().type == "software" || backend.facts().type == "integrated";
+  const std::uint64_t host = need.host + (shared ? need.device : 0);
+  if (cpu.memory && host > cpu.memory)
+    throw Error(Fault::too_large, fmt::format("this needs {} MiB of memory and the machine has {} MiB; lower --lmax or "
+                                              "take a mesh with fewer triangles",
+                                              host >> 20, cpu.memory >> 20));
+}
+
+void write_plan(const Options& options, const Body& body, const MomentProblem& problem, const Backend& backend) {
+  const plan::Moments plan = plan::moments(problem, int(backend.facts().subgroup));
+  const MemoryNeed need = backend.moments_memory(problem);
+  write_stdout(mesh_line(body.surface.mesh()) + "\n");
+  write_stdout(fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, {:.9g}) "
+                           "({}), R = {:.9g}\n",
+                           options.lmax, Coefficients::count(options.lmax), body.origin.x(), body.origin.y(),
+                           body.origin.z(), body.origin_kind, body.brillouin_radius));
+  write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
+  write_stdout(fmt::format("work: {} pairs of triangles, {:.3g} of {:.3g} recursion entries after the cut-off {:.0e}\n",
+                           plan.pair_count, plan.elements, plan.full_elements, options.cut_off));
+  write_stdout(fmt::format("memory: at most {} MiB on the host and {} MiB on the device, beside the mesh; JSON of about "
+                           "{} MiB\n",
+                           (need.host >> 20) + 1, (need.device + (1 << 20) - 1) >> 20, (json_bytes(options.lmax) >> 20) + 1));
+}
+
+ExpandResult compute(const Options& options, const Common& common, Body body, std::unique_ptr<Backend> backend,
+                     std::vector<std::string> notes, Timings timings, Stopwatch& watch) {
+  ConsoleMonitor monitor(common.style());
+  const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
+  RunReport run;
+  Coefficients mass = backend->moments(problem, monitor, &run);
+  timings.moments = watch.lap();
+  Accuracy accuracy = verify_moments(problem, *backend, parse_verify(options.verify), options.seed, monitor);
+  timings.verify = watch.lap();
+  const Tensors second = tensors(body);
+  timings.total = watch.total();
+  ExpandResult result{common.command,       fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))),
+                      std::move(body),      backend->facts(),
+                      options.cut_off,      std::move(mass),
+                      second,               std::move(run),
+                      timings,              std::move(accuracy),
+                      std::move(notes)};
+  return result;
+}
+
+void run(const Options& options, Common& common) {
+  Stopwatch watch;
+  check_outputs(options);
+  const OriginChoice origin = parse_origin(options.origin);
+  // Before long work: a result that cannot be written should fail now.
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  if (!options.dry_run)
+    for (const std::string& path : options.outputs) files.push_back(std::make_unique<AtomicFile>(path));
+
+  RawMesh mesh = load_mesh(options.mesh);
+  std::vector<std::string> notes = mesh.notes;
+  Body body = make_body(ClosedSurface::from(std::move(mesh)), origin, options.density);
+  Timings timings;
+  timings.load = watch.lap();
+  std::string note;
+  auto backend = open_backend(common, &note);
+  timings.device = watch.lap();
+  if (!note.empty()) {
+    if (!common.quiet) fmt::print(stderr, "cowgpu: {}\n", note);
+    notes.push_back(note);
+  }
+  const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
+  check_memory(backend->moments_memory(problem), *backend);
+  if (options.dry_run) {
+    write_plan(options, body, problem, *backend);
+    return;
+  }
+  const ExpandResult result =
+      compute(options, common, std::move(body), std::move(backend), std::move(notes), timings, watch);
+
+  const bool writes_json = options.json || std::any_of(options.outputs.begin(), options.outputs.end(),
+                                                       [](const std::string& o) { return ends_with(o, ".json"); });
+  if (writes_json && json_bytes(options.lmax) > large_json && !common.quiet)
+    fmt::print(stderr, "cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n", json_bytes(options.lmax) / 1000000);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Sink sink = [&](std::string_view text) {
+      check_stop(ConsoleMonitor(ProgressStyle::none));
+      files[i]->write(text);
+    };
+    if (ends_with(options.outputs[i], ".json"))
+      write_json(result, sink);
+    else
+      write_csv(result, sink);
+    files[i]->commit();
+    if (!common.quiet) fmt::print(stderr, "cowgpu: wrote {}\n", options.outputs[i]);
+  }
+  if (options.json)
+    write_json(result, write_stdout);
+  else
+    write_screen(result, write_stdout);
+  if (result.accuracy.how != Verify::none && !result.accuracy.passed()) {
+    flush_stdout();
+    throw Error(Fault::check_failed, fmt::format("the two paths differ by {:.1e} at degree {}, more than {:.1e}: do not trust "
+                                                 "these numbers; try --device cpu and `cowgpu validate`",
+                                                 result.accuracy.worst(), result.accuracy.worst_degree(),
+                                                 result.accuracy.bound));
+  }
+}
+
+} // namespace
+
+void add_expand(CLI::App& app, Common& common) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("expand", "Multipole moments of a closed mesh");
+  command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
+      ->check(CLI::Range(0, largest_degree))
+      ->capture_default_str();
+  command->add_option("--of", options->of, "What to expand: mass")->capture_default_str();
+  command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
+      ->capture_default_str();
+  command->add_option("--density", options->density, "Mass per cubed length unit of the mesh")->capture_default_str();
+  command->add_option("--cut-off", options->cut_off,
+                      "Leave out, degree by degree, triangles that add up to less than this part of the degree's bound "
+                      "(0: none)")
+      ->check(CLI::Range(0.0, 1e-3))
+      ->capture_default_str();
+  command->add_option("--verify", options->verify,
+                      "Compute again on a second path: sample (256 triangles), full (all), none")
+      ->check(CLI::IsMember({"sample", "full", "none"}))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of the sample")->capture_default_str();
+  command->add_flag("--json", options->json, "The result as JSON on stdout (data/schemas/cowgpu.result.v1.json)");
+  command->add_option("-o,--output", options->outputs, "Write FILE.json or FILE.csv; can be repeated")->type_name("FILE");
+  command->add_flag("--dry-run", options->dry_run, "Print the plan and the memory it needs, and stop");
+  add_common_options(*command, common);
+  command->callback([options, &common] { run(*options, common); });
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,60 @@
+#include "host/cli/commands.hpp"
+#include "host/error.hpp"
+#include "host/version.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+
+using namespace cowgpu;
+
+namespace {
+
+int fail(const char* name, const char* what, int code) {
+  fmt::print(stderr, "cowgpu: error [{}]: {}\n", name, what);
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Exact multipole moments of triangle meshes, on the GPU and on the CPU");
+  app.set_version_flag("--version", std::string("cowgpu ") + version);
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 ok, 1 a numeric check failed, 2 usage, 3 bad input, 4 no or lost device, 5 input/output, "
+             "130 interrupted.\nFirst steps: cowgpu expand --lmax 8; cowgpu expand MESH.off --lmax 512 -o moments.json");
+  cli::Common common;
+  common.command.assign(argv, argv + argc);
+  cli::add_expand(app, common);
+  cli::add_validate(app, common);
+  cli::add_inspect(app, common);
+  cli::add_devices(app, common);
+  cli::add_bench(app, common);
+  try {
+    app.parse(argc, argv);
+    cli::flush_stdout();
+    return common.exit_code;
+  } catch (const CLI::Success& help) {
+    app.exit(help);
+    cli::flush_stdout();
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    const CLI::App* at = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
+    return fail(name(Fault::bad_argument).data(),
+                fmt::format("{}; see `{} --help`", error.what(), at == &app ? "cowgpu" : "cowgpu " + at->get_name()).c_str(),
+                2);
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  cli::catch_signals();
+  try {
+    return run(argc, argv);
+  } catch (const Error& error) {
+    return fail(name(error.fault()).data(), error.what(), exit_code(error.fault()));
+  } catch (const std::bad_alloc&) {
+    return fail("too-large", "this machine has not enough memory for this; lower --lmax or take a smaller mesh", 3);
+  } catch (const std::exception& error) {
+    return fail("internal", error.what(), 70);
+  }
+}

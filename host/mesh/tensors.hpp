@@ -1,0 +1,22 @@
+// Second moments of a body in Cartesian form.
+#pragma once
+
+#include "host/mesh/body.hpp"
+
+#include <Eigen/Core>
+
+namespace cowgpu {
+
+/// Symmetric tensors about the body's origin, in mesh axes and density times length to the fifth power.
+struct Tensors {
+  Eigen::Matrix3d second_moment; ///< integral of density x_i x_j
+  Eigen::Matrix3d quadrupole;    ///< integral of density (3 x_i x_j - r^2 delta_ij), traceless
+  Eigen::Matrix3d inertia;       ///< integral of density (r^2 delta_ij - x_i x_j)
+};
+
+/// Exact up to rounding: the integral of x_i x_j over the tetrahedron (0, A, B, C) is det(A, B, C)/120 times
+/// (S_i S_j + A_i A_j + B_i B_j + C_i C_j), S = A + B + C (Tonon 2004, "Explicit exact formulas for the 3-D tetrahedron
+/// inertia tensor"). Summed in long double.
+Tensors tensors(const Body& body);
+
+} // namespace cowgpu

@@ -1,0 +1,135 @@
+#include "host/report/number.hpp"
+#include "host/report/result.hpp"
+#include "host/version.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace cowgpu {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+ordered_json json_of(const Eigen::Matrix3d& m) {
+  ordered_json rows = ordered_json::array();
+  for (int row = 0; row < 3; ++row) rows.push_back({m(row, 0), m(row, 1), m(row, 2)});
+  return rows;
+}
+
+ordered_json json_of(const Body& body) {
+  const RawMesh& mesh = body.surface.mesh();
+  return {{"name", mesh.name},
+          {"sha256", mesh.sha256},
+          {"vertices", mesh.vertices.size()},
+          {"faces", mesh.faces.size()},
+          {"volume", body.volume},
+          {"area", body.area},
+          {"centre_of_mass", json_of(body.centre_of_mass)},
+          {"bounding_box", {json_of(body.box.min), json_of(body.box.max)}},
+          {"brillouin_radius", body.brillouin_radius}};
+}
+
+ordered_json json_of(const DeviceFacts& device) {
+  return {{"path", device.type == "cpu" ? "cpu" : "vulkan"},
+          {"name", device.name},
+          {"type", device.type},
+          {"driver", device.driver},
+          {"api", device.api},
+          {"threads", device.threads},
+          {"subgroup_size", device.subgroup}};
+}
+
+ordered_json json_of(const Timings& t, const RunReport& run) {
+  ordered_json kernels = ordered_json::array();
+  for (const KernelTime& k : run.kernels)
+    kernels.push_back({{"kernel", k.kernel}, {"dispatches", k.dispatches}, {"seconds", k.seconds}});
+  return {{"load", t.load},     {"device", t.device}, {"moments", t.moments},
+          {"verify", t.verify}, {"total", t.total},   {"kernels", kernels}};
+}
+
+ordered_json json_of(const Accuracy& accuracy) {
+  constexpr std::array how = {"none", "sample", "full"};
+  ordered_json agreements = ordered_json::array();
+  for (const Agreement& a : accuracy.agreements)
+    agreements.push_back({{"path", a.path},
+                          {"against", a.against},
+                          {"worst", a.errors.worst},
+                          {"worst_degree", a.errors.worst_degree}});
+  return {{"verify", how[std::size_t(accuracy.how)]},
+          {"triangles", accuracy.triangles},
+          {"seed", accuracy.seed},
+          {"bound", accuracy.bound},
+          {"worst", accuracy.worst()},
+          {"passed", accuracy.passed()},
+          {"agreements", agreements}};
+}
+
+// The coefficients do not fit a document in memory at high degree: one row a line, written as they come.
+void write_coefficients(const Coefficients& q, const Sink& sink) {
+  std::string text;
+  for (int l = 0; l <= q.lmax; ++l)
+    for (int m = 0; m <= l; ++m) {
+      text += l == 0 ? "\n[" : ",\n[";
+      text += std::to_string(l) + ", " + std::to_string(m) + ", ";
+      append_number(text, q(l, m).real());
+      text += ", ";
+      append_number(text, q(l, m).imag());
+      text += "]";
+      if (text.size() > 65536) {
+        sink(text);
+        text.clear();
+      }
+    }
+  sink(text);
+}
+
+// An object's members without the closing brace, so that more can follow.
+std::string open_members(const ordered_json& object) {
+  std::string text = object.dump(1, ' ', false, ordered_json::error_handler_t::replace);
+  text.pop_back();
+  text.erase(text.find_last_not_of("\n ") + 1);
+  return text;
+}
+
+} // namespace
+
+std::uint64_t json_bytes(int lmax) { return 4096 + 61 * std::uint64_t(Coefficients::count(lmax)); }
+
+void write_json(const ExpandResult& result, const Sink& sink) {
+  const ordered_json head = {{"schema", "cowgpu.result.v1"},
+                             {"program", {{"name", "cowgpu"}, {"version", version}}},
+                             {"command", result.command},
+                             {"created", result.created},
+                             {"mesh", json_of(result.body)},
+                             {"device", json_of(result.device)},
+                             {"notes", result.notes},
+                             {"tensors",
+                              {{"origin", json_of(result.body.origin)},
+                               {"units", "density * length^5, in the mesh's length unit"},
+                               {"quadrupole", json_of(result.tensors.quadrupole)},
+                               {"inertia", json_of(result.tensors.inertia)},
+                               {"second_moment", json_of(result.tensors.second_moment)}}},
+                             {"timings", json_of(result.timings, result.run)},
+                             {"accuracy", json_of(result.accuracy)}};
+  const ordered_json mass = {
+      {"lmax", result.mass.lmax},
+      {"origin", json_of(result.mass.origin)},
+      {"origin_kind", result.body.origin_kind},
+      {"reference_radius", result.mass.reference_radius},
+      {"normalisation", "orthonormal"},
+      {"condon_shortley", true},
+      {"conjugated", false},
+      {"axes", "the mesh's; theta from +z, phi from +x towards +y"},
+      {"units", "density * length^3, in the mesh's length unit; Q_lm = value * reference_radius^l"},
+      {"density", result.mass.density},
+      {"cut_off", result.cut_off}};
+  sink(open_members(head) + ",\n \"expansions\": {\"mass\": " + open_members(mass) + ",\n \"coefficients\": [");
+  write_coefficients(result.mass, sink);
+  sink("\n]}}\n}\n");
+}
+
+} // namespace cowgpu

@@ -1,0 +1,62 @@
+// Everything one `expand` found out, ready to be shown or written.
+#pragma once
+
+#include "host/backend.hpp"
+#include "host/mesh/body.hpp"
+#include "host/mesh/tensors.hpp"
+#include "host/spectrum/verify.hpp"
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cowgpu {
+
+/// Seconds of the parts of a run.
+struct Timings {
+  double load = 0;    ///< reading and checking the mesh
+  double device = 0;  ///< opening the device
+  double moments = 0; ///< planning, computing, normalising
+  double verify = 0;
+  double total = 0;   ///< since the program started
+};
+
+/// Result of `expand`.
+struct ExpandResult {
+  std::vector<std::string> command; ///< as typed
+  std::string created;              ///< UTC, ISO 8601
+  Body body;
+  DeviceFacts device;
+  double cut_off = 0;
+  Coefficients mass;                ///< about body.origin
+  Tensors tensors;
+  RunReport run;
+  Timings timings;
+  Accuracy accuracy;
+  std::vector<std::string> notes;   ///< sentences: what was done to the mesh, why the CPU was used
+};
+
+/// Where text goes: a stream or a file.
+using Sink = std::function<void(std::string_view)>;
+
+/// One line: name, hash, triangles. It opens every result.
+std::string mesh_line(const RawMesh& mesh);
+
+/// The device in words; a software device is named as such.
+std::string device_line(const DeviceFacts& device);
+
+/// The result for people: what was computed, on what, how long, how accurate, the leading multipoles (raw Q_lm in mesh
+/// units, not conjugated, in two columns like the paper's first table), volume, centre of mass, tensors.
+void write_screen(const ExpandResult& result, const Sink& sink);
+
+/// The result as JSON after data/schemas/cowgpu.result.v1.json, streamed; numbers read back as the same doubles.
+void write_json(const ExpandResult& result, const Sink& sink);
+
+/// Bytes that write_json() will write, to about ten per cent.
+std::uint64_t json_bytes(int lmax);
+
+/// The coefficients as CSV: comment lines with conventions and provenance, a header, then l, m, re, im of Q_lm / R^l.
+void write_csv(const ExpandResult& result, const Sink& sink);
+
+} // namespace cowgpu

@@ -1,0 +1,89 @@
+#include "host/report/result.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+namespace cowgpu {
+namespace {
+
+std::string vector_text(const Vec3& v) { return fmt::format("({:.12g}, {:.12g}, {:.12g})", v.x(), v.y(), v.z()); }
+
+std::string complex_text(int m, std::complex<double> q) {
+  if (m == 0) return fmt::format("{:+.6e}", q.real());
+  return fmt::format("{:+.6e} {} {:.6e} i", q.real(), std::signbit(q.imag()) ? '-' : '+', std::abs(q.imag()));
+}
+
+// Raw Q_lm in two columns, as many degrees as the paper's first table has.
+void write_table(const Coefficients& q, const Sink& sink) {
+  std::vector<std::string> rows;
+  for (int l = 0; l <= std::min(q.lmax, 4); ++l)
+    for (int m = 0; m <= l; ++m)
+      rows.push_back(fmt::format("{:>3} {:>3}  {:<36}", l, m, complex_text(m, q(l, m) * std::pow(q.reference_radius, l))));
+  const std::size_t half = (rows.size() + 1) / 2;
+  sink(fmt::format("  {:>3} {:>3}  {:<36}", "l", "m", "Q_lm"));
+  sink(rows.size() > 1 ? fmt::format("{:>3} {:>3}  Q_lm\n", "l", "m") : "\n");
+  for (std::size_t i = 0; i < half; ++i) {
+    std::string line = "  " + rows[i] + (i + half < rows.size() ? rows[i + half] : "");
+    line.erase(line.find_last_not_of(' ') + 1);
+    sink(line + "\n");
+  }
+}
+
+void write_matrix(const char* name, const Eigen::Matrix3d& matrix, const Sink& sink) {
+  for (int row = 0; row < 3; ++row)
+    sink(fmt::format("  {:<26} {:+.12e} {:+.12e} {:+.12e}\n", row == 0 ? name : "", matrix(row, 0), matrix(row, 1),
+                     matrix(row, 2)));
+}
+
+void write_accuracy(const ExpandResult& result, const Sink& sink) {
+  const Accuracy& accuracy = result.accuracy;
+  if (accuracy.how == Verify::none) {
+    sink("accuracy: not checked (--verify none)\n");
+    return;
+  }
+  for (const Agreement& a : accuracy.agreements)
+    sink(fmt::format("accuracy: {} and {} agree to {:.1e} (worst degree {}, bound {:.1e}: {}) on {} triangles{}, "
+                     "degrees 0 to {}\n",
+                     a.path, a.against, a.errors.worst, a.errors.worst_degree, accuracy.bound,
+                     accuracy.passed() ? "passed" : "FAILED", accuracy.triangles,
+                     accuracy.triangles < result.body.surface.faces().size()
+                         ? fmt::format(" (sample, seed {})", accuracy.seed)
+                         : "",
+                     result.mass.lmax));
+}
+
+} // namespace
+
+void write_screen(const ExpandResult& result, const Sink& sink) {
+  const Coefficients& q = result.mass;
+  sink(mesh_line(result.body.surface.mesh()) + "\n");
+  for (const std::string& note : result.notes) sink("note: " + note + "\n");
+  sink(fmt::format("computed: mass multipoles to degree {}, {} coefficients, in {:.3f} s ({} pairs of triangles, {:.1f} % of "
+                   "the work after the cut-off {:.0e})\n",
+                   q.lmax, q.values.size(), result.run.seconds, result.run.pairs,
+                   100 * std::min(1.0, result.run.elements / result.run.full_elements), result.cut_off));
+  sink("device: " + device_line(result.device) + "\n");
+  write_accuracy(result, sink);
+  const Timings& t = result.timings;
+  sink(fmt::format("time: load {:.3f} s, device {:.3f} s, moments {:.3f} s, check {:.3f} s, in all {:.3f} s\n", t.load,
+                   t.device, t.moments, t.verify, t.total));
+
+  sink(fmt::format("\nbody, in the mesh's length unit and axes, density {:.17g}\n", q.density));
+  sink(fmt::format("  {:<26} {:.15g}\n", "volume", result.body.volume));
+  sink(fmt::format("  {:<26} {:.15g}\n", "mass", result.body.mass()));
+  sink(fmt::format("  {:<26} {:.15g}\n", "area", result.body.area));
+  sink(fmt::format("  {:<26} {}\n", "centre of mass", vector_text(result.body.centre_of_mass)));
+  sink(fmt::format("  {:<26} {} ({})\n", "origin", vector_text(result.body.origin), result.body.origin_kind));
+  sink(fmt::format("  {:<26} {:.15g}\n", "Brillouin radius R", result.body.brillouin_radius));
+
+  sink("\nleading mass multipoles Q_lm = integral of density r^l Y_lm about the origin: raw (not divided by R^l), in mesh "
+       "units,\nnot conjugated; Y_lm orthonormal with the Condon-Shortley phase, polar axis z; Q_l,-m = (-1)^m conj Q_lm\n");
+  write_table(q, sink);
+  sink("\ntensors about the origin\n");
+  write_matrix("quadrupole 3 x x - r^2", result.tensors.quadrupole, sink);
+  write_matrix("inertia r^2 - x x", result.tensors.inertia, sink);
+}
+
+} // namespace cowgpu

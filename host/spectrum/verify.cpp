@@ -1,0 +1,98 @@
+#include "host/spectrum/verify.hpp"
+
+#include "host/plan/moments.hpp"
+#include "host/reference/moments.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace cowgpu {
+namespace {
+
+constexpr std::size_t sample_size = 256;
+
+// The reference leaves out what is this small beside the bound of a degree: far below its own rounding.
+constexpr double reference_tolerance = 1e-18;
+
+std::vector<Face> sample_of(std::span<const Face> faces, std::uint64_t seed) {
+  std::vector<Face> sample;
+  std::mt19937_64 random(seed);
+  std::sample(faces.begin(), faces.end(), std::back_inserter(sample), sample_size, random);
+  return sample;
+}
+
+template <class Real> Coefficients reference_moments(const MomentProblem& problem, Monitor& monitor) {
+  const std::vector<Real> values = reference::moments<Real>(problem, reference_tolerance, monitor);
+  Coefficients result;
+  result.lmax = problem.lmax;
+  for (std::size_t i = 0; i < values.size(); i += 2) result.values.emplace_back(double(values[i]), double(values[i + 1]));
+  return result;
+}
+
+} // namespace
+
+double Accuracy::worst() const {
+  double worst = 0;
+  for (const Agreement& a : agreements)
+    if (!(a.errors.worst <= worst)) worst = a.errors.worst;
+  return worst;
+}
+
+int Accuracy::worst_degree() const {
+  double most = 0;
+  int degree = 0;
+  for (const Agreement& a : agreements)
+    if (!(a.errors.worst <= most)) {
+      most = a.errors.worst;
+      degree = a.errors.worst_degree;
+    }
+  return degree;
+}
+
+bool Accuracy::passed() const { return worst() <= bound; }
+
+MomentProblem mass_problem(const Body& body, int lmax, double cut_off) {
+  MomentProblem problem;
+  problem.vertices = body.surface.vertices();
+  problem.faces = body.surface.faces();
+  problem.origin = body.origin;
+  problem.reference_radius = body.brillouin_radius;
+  problem.density = body.density;
+  problem.lmax = lmax;
+  problem.cut_off = cut_off;
+  return problem;
+}
+
+Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify how, std::uint64_t seed,
+                        Monitor& monitor) {
+  Accuracy accuracy;
+  accuracy.how = how;
+  if (how == Verify::none) return accuracy;
+  std::vector<Face> sample;
+  MomentProblem part = problem;
+  if (how == Verify::sample && problem.faces.size() > sample_size) {
+    sample = sample_of(problem.faces, seed);
+    part.faces = sample;
+    part.reference_radius = brillouin_radius(part.vertices, part.faces, part.origin);
+  }
+  accuracy.triangles = part.faces.size();
+  accuracy.seed = seed;
+  accuracy.bound = expected_error(problem.lmax);
+  const std::vector<double> bound = plan::degree_bound(part);
+  const Coefficients done = backend.moments(part, monitor);
+  if (backend.facts().type != "cpu") {
+    const Coefficients other = make_cpu_backend()->moments(part, monitor);
+    accuracy.agreements.push_back({"Vulkan", "CPU path", compare(done, other, bound)});
+  } else if (how == Verify::sample) {
+    accuracy.agreements.push_back(
+        {"CPU path", "reference in double", compare(done, reference_moments<double>(part, monitor), bound)});
+  } else {
+    accuracy.agreements.push_back({"CPU path", "reference in extended precision",
+                                   compare(done, reference_moments<long double>(part, monitor), bound)});
+  }
+  return accuracy;
+}
+
+} // namespace cowgpu

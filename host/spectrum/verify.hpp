@@ -1,0 +1,44 @@
+// Checks a backend's moments against a second path.
+#pragma once
+
+#include "host/backend.hpp"
+#include "host/mesh/body.hpp"
+#include "host/spectrum/compare.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cowgpu {
+
+enum class Verify { none, sample, full };
+
+/// One path against another.
+struct Agreement {
+  std::string path, against;
+  DegreeErrors errors;
+};
+
+/// Outcome of a check: every pair of paths on the same triangles, at all degrees.
+struct Accuracy {
+  Verify how = Verify::none;
+  std::uint64_t triangles = 0;
+  std::uint64_t seed = 0; ///< of the sample
+  double bound = 0;       ///< the paths must agree to this, expected_error()
+  std::vector<Agreement> agreements;
+
+  double worst() const;
+  int worst_degree() const;
+  bool passed() const; ///< every agreement within the bound; NaN fails
+};
+
+/// The problem of a body's mass moments. It refers to the body.
+MomentProblem mass_problem(const Body& body, int lmax, double cut_off);
+
+/// Re-does the moments on a seeded sample of 256 triangles (Verify::sample; all if there are no more) or on all of them,
+/// on `backend` and on the second path: the CPU path for a Vulkan backend, the plain reference in double precision
+/// (sample) or extended precision (full) for the CPU path. Throws what the backends throw.
+Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify how, std::uint64_t seed,
+                        Monitor& monitor);
+
+} // namespace cowgpu

@@ -1,0 +1,92 @@
+#include "tests/support/compare_moments.hpp"
+
+#include "host/error.hpp"
+#include "host/mesh/geometry.hpp"
+#include "host/plan/moments.hpp"
+#include "host/reference/moments.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstring>
+#include <iostream>
+
+namespace cowgpu::test {
+namespace {
+
+void check_against(Backend& backend, const MomentProblem& problem, std::span<const long double> reference,
+                   double figure) {
+  const Coefficients result = moments(backend, problem);
+  REQUIRE(result.values.size() == Coefficients::count(problem.lmax));
+  REQUIRE(result.lmax == problem.lmax);
+  CHECK(result.origin == problem.origin);
+  CHECK(result.reference_radius == problem.reference_radius);
+  CHECK(result.density == problem.density);
+  const DegreeErrors errors = cowgpu::compare(result, reference, plan::degree_bound(problem));
+  INFO(backend.facts().name << ", " << problem.faces.size() << " faces, lmax " << problem.lmax << ", worst at degree "
+                            << errors.worst_degree);
+  CHECK(errors.worst <= figure);
+}
+
+} // namespace
+
+MomentProblem moment_problem(const RawMesh& mesh, int lmax, const Vec3& origin) {
+  MomentProblem problem;
+  problem.vertices = mesh.vertices;
+  problem.faces = mesh.faces;
+  problem.origin = origin;
+  problem.reference_radius = mesh.faces.empty() ? 1 : brillouin_radius(mesh.vertices, mesh.faces, origin);
+  problem.lmax = lmax;
+  return problem;
+}
+
+std::unique_ptr<Backend> gpu_backend(GpuOptions options) {
+  options.validation = true;
+  try {
+    return make_gpu_backend(options);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::no_loader && error.fault() != Fault::no_device && error.fault() != Fault::no_fp64) throw;
+    return {};
+  }
+}
+
+void skip_without_gpu() {
+  std::cout << "SKIPPED: no Vulkan device" << std::endl;
+}
+
+Paths::Paths() : cpu_(make_cpu_backend()), gpu_(gpu_backend()) {}
+
+Paths::~Paths() {
+  if (gpu_) CHECK(gpu_->validation_messages() == std::vector<std::string>{});
+}
+
+void Paths::each(const std::function<void(Backend&)>& check) {
+  check(*cpu_);
+  if (gpu_) check(*gpu_);
+}
+
+void Paths::compare(const MomentProblem& problem, double figure, double tolerance) {
+  const auto reference = reference::moments<long double>(problem, tolerance);
+  each([&](Backend& backend) { check_against(backend, problem, reference, figure); });
+}
+
+Coefficients moments(Backend& backend, const MomentProblem& problem, RunReport* report) {
+  Monitor silent;
+  return backend.moments(problem, silent, report);
+}
+
+void compare_path(Backend& backend, const MomentProblem& problem, double figure, double tolerance) {
+  check_against(backend, problem, reference::moments<long double>(problem, tolerance), figure);
+}
+
+void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure) {
+  const DegreeErrors errors = cowgpu::compare(a, b, plan::degree_bound(problem));
+  INFO("worst at degree " << errors.worst_degree);
+  CHECK(errors.worst <= figure);
+}
+
+bool same_bits(const Coefficients& a, const Coefficients& b) {
+  return a.values.size() == b.values.size() &&
+         std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(a.values[0])) == 0;
+}
+
+} // namespace cowgpu::test

@@ -1,0 +1,53 @@
+// One call that runs every path of the stage `moments` and holds each against the reference.
+#pragma once
+
+#include "host/backend.hpp"
+#include "host/spectrum/compare.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace cowgpu::test {
+
+/// A problem about `origin` with the body's own radius there. `mesh` must outlive it.
+MomentProblem moment_problem(const RawMesh& mesh, int lmax, const Vec3& origin = Vec3::Zero());
+
+/// The Vulkan path with validation on, or null where there is no device. Made anew by each call: two instances at once
+/// would share volk's function pointers, so a test lets one go before it asks for the next.
+std::unique_ptr<Backend> gpu_backend(GpuOptions options = {});
+/// Makes ctest list the test as skipped; the test returns then.
+void skip_without_gpu();
+
+/// The CPU path and, where there is a device, the Vulkan path with validation on. At the end of its life it asks that
+/// validation had nothing to say.
+class Paths {
+public:
+  Paths();
+  ~Paths();
+  Paths(const Paths&) = delete;
+  Paths& operator=(const Paths&) = delete;
+
+  void each(const std::function<void(Backend&)>& check);
+
+  /// Errors against the reference in 80-bit arithmetic, as compare() counts them, are at most `figure` on every path.
+  /// `tolerance` is the reference's own.
+  void compare(const MomentProblem& problem, double figure, double tolerance = 0);
+
+private:
+  std::unique_ptr<Backend> cpu_, gpu_;
+};
+
+/// Moments without anybody watching.
+Coefficients moments(Backend& backend, const MomentProblem& problem, RunReport* report = nullptr);
+
+/// What Paths::compare does, for one path.
+void compare_path(Backend& backend, const MomentProblem& problem, double figure, double tolerance = 0);
+
+/// `a` and `b` are at most `figure` apart, as compare() counts it with the bound of `problem`.
+void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure);
+
+/// The same bits, -0 and 0 told apart.
+bool same_bits(const Coefficients& a, const Coefficients& b);
+
+} // namespace cowgpu::test
