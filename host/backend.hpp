@@ -1,9 +1,9 @@
 // The verbs of the engine. One interface, two implementations: host/cpu and host/gpu.
 #pragma once
 
-#include "host/mesh/raw_mesh.hpp"
+#include "host/coefficients.hpp"
 #include "host/monitor.hpp"
-#include "host/spectrum/coefficients.hpp"
+#include "host/types.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -23,7 +23,9 @@ using Vec2 = Eigen::Vector2d; // x, y in the plane of symmetry
 
 const Vec3 forward(1, 0, 0), up(0, 1, 0), right(0, 0, 1);
 
-Vec3 in_plane(const Vec2& p, double z = 0) { return {p.x(), p.y(), z}; }
+Vec3 in_plane(const Vec2& p, double z = 0) {
+  return {p.x(), p.y(), z};
+}
 
 /// Quads on the side z >= 0. A vertex with z = 0 is its own mirror image.
 struct HalfCage {
@@ -150,8 +152,8 @@ public:
   Limb(HalfCage& cage, std::vector<std::size_t> patch, std::vector<Corner> corners, const Vec3& u_axis)
       : cage_(cage), patch_(std::move(patch)), corners_(std::move(corners)), u_axis_(u_axis) {}
 
-  /// Pushes the patch to a section and builds the walls. Where the section meets the plane of symmetry there is no wall:
-  /// the mirror image of the limb goes on there.
+  /// Pushes the patch to a section and builds the walls. Where the section meets the plane of symmetry there is no
+  /// wall: the mirror image of the limb goes on there.
   Limb& grow(const Section& section) {
     const Vec3 along = section.along.normalized();
     const Vec3 u = (u_axis_ - u_axis_.dot(along) * along).normalized();
@@ -208,8 +210,21 @@ void emboss(HalfCage& cage, std::size_t quad, const Vec3& at, double radius, dou
 
 /// The rings by name, as the parts need them.
 enum Station : std::size_t {
-  rump, thigh_back, thigh_front, flank, barrel, arm_back, arm_front, brisket,
-  neck, poll, ears_front, eyes_front, bridge, muzzle, nose
+  rump,
+  thigh_back,
+  thigh_front,
+  flank,
+  barrel,
+  arm_back,
+  arm_front,
+  brisket,
+  neck,
+  poll,
+  ears_front,
+  eyes_front,
+  bridge,
+  muzzle,
+  nose
 };
 
 std::vector<Ring> trunk_rings(const CowLengths& l) {
@@ -222,9 +237,9 @@ std::vector<Ring> trunk_rings(const CowLengths& l) {
       ring(-0.510, -0.485, 0.930, 0.420, 0.54, 1.15), // rump
       ring(-0.425, -0.425, 1.000, 0.260, 0.80, 1.15), // thigh_back
       ring(-0.230, -0.240, 1.015, 0.160, 0.90, 1.05), // thigh_front
-      ring(-0.120, -0.120, 0.990, 0.060, 0.98, 0.96), // flank
-      ring(0.0600, 0.0500, 0.965, -0.15, 1.09, 0.90), // barrel
-      ring(0.2400, 0.2400, 1.000, 0.000, 0.88, 0.80), // arm_back
+      ring(-0.120, -0.105, 0.990, 0.040, 1.00, 0.96), // flank
+      ring(0.0600, 0.0450, 0.970, -0.11, 1.10, 0.90), // barrel
+      ring(0.2400, 0.2250, 1.000, -0.05, 0.90, 0.80), // arm_back
       ring(0.3700, 0.4000, 1.020, 0.040, 0.78, 0.74), // arm_front
       ring(0.4400, 0.5000, 1.010, 0.210, 0.58, 0.76), // brisket
   };
@@ -262,7 +277,7 @@ std::vector<Ring> head_rings(const CowLengths& l) {
 /// Between brisket and poll, thicker below than a straight loft: the dewlap.
 Ring neck_ring(const Ring& from, const Ring& to, const CowLengths& l) {
   return {(from.top + to.top) / 2 + Vec2(0, 0.01 * l.body_height),
-          (from.bottom + to.bottom) / 2 - Vec2(-0.02, 0.13) * l.body_height, 0.53 * (from.half_width + to.half_width),
+          (from.bottom + to.bottom) / 2 - Vec2(-0.02, 0.10) * l.body_height, 0.53 * (from.half_width + to.half_width),
           0.80};
 }
 
@@ -299,18 +314,18 @@ void grow_leg(HalfCage& cage, std::size_t quad, const CowLengths& l, const std::
 void grow_legs(HalfCage& cage, const Loft& body, const CowLengths& l) {
   grow_leg(cage, body.quads[thigh_back][3], l,
            {
-               {0.15, 1.18, 1.92, 1.40, 0.80},  // thigh
-               {-0.35, 0.86, 1.78, 0.78, 0.64}, // gaskin
-               {-1.00, 0.62, 1.72, 0.64, 0.56}, // hock
-               {-0.72, 0.24, 1.70, 0.48, 0.48}, // cannon
-               {-0.40, 0.00, 1.70, 0.84, 0.80}, // hoof
+               {-0.10, 1.16, 1.95, 1.15, 0.72},   // thigh
+               {-0.35, 0.86, 1.78, 0.78, 0.64},   // gaskin
+               {-1.00, 0.62, 1.72, 0.64, 0.56},   // hock
+               {-0.74, 0.20, 1.70, 0.46, 0.48},   // cannon
+               {-0.36, -0.015, 1.70, 0.94, 0.90}, // hoof
            });
   grow_leg(cage, body.quads[arm_back][3], l,
            {
-               {-0.10, 1.00, 1.60, 1.00, 0.78}, // upper arm
-               {0.02, 0.60, 1.52, 0.62, 0.60},  // knee
-               {-0.06, 0.24, 1.50, 0.48, 0.48}, // cannon
-               {0.22, 0.00, 1.50, 0.84, 0.80},  // hoof
+               {-0.10, 0.92, 1.66, 0.90, 0.72},  // upper arm
+               {0.02, 0.60, 1.52, 0.62, 0.60},   // knee
+               {-0.06, 0.20, 1.50, 0.46, 0.48},  // cannon
+               {0.26, -0.015, 1.50, 0.94, 0.90}, // hoof
            });
 }
 
@@ -321,11 +336,11 @@ void grow_udder(HalfCage& cage, const Loft& body, const CowLengths& l) {
   const auto& r2 = body.rings[flank];
   Limb udder(cage, {back, front},
              {{r0[4], -1, -1}, {r1[4], 0, -1}, {r2[4], 1, -1}, {r0[5], -1, 0}, {r1[5], 0, 0}, {r2[5], 1, 0}}, forward);
-  const Vec3 root = cage.vertices[r1[5]] + 0.02 * l.body_length * forward;
+  const Vec3 root = cage.vertices[r1[5]] + 0.005 * l.body_length * forward;
   auto knot = [&](double down, double length, double width) {
     udder.grow({root - down * l.udder_depth * up, -up, length * l.udder_depth, width * l.udder_depth});
   };
-  knot(0.30, 0.84, 0.56);
+  knot(0.30, 0.78, 0.56);
   knot(1.00, 0.84, 0.60);
   for (std::size_t quarter : {back, front}) {
     const Vec3 teat = cage.centre(quarter);
@@ -366,14 +381,14 @@ void grow_ear(HalfCage& cage, std::size_t quad, const CowLengths& l) {
 
 void carve_face(HalfCage& cage, const Loft& body, const CowLengths& l) {
   const std::size_t eye = body.quads[ears_front][1], nostril = body.quads[muzzle][1];
-  emboss(cage, eye, cage.centre(eye), 0.16 * l.head_width, 0.10 * l.head_width);
+  emboss(cage, eye, cage.centre(eye) + 0.03 * l.head_length * forward, 0.14 * l.head_width, 0.10 * l.head_width);
   emboss(cage, nostril, cage.centre(nostril), 0.1 * l.head_width, -0.12 * l.head_width);
 }
 
 void check(const CowLengths& l) {
-  for (double length : {l.body_length, l.body_height, l.body_width, l.leg_length, l.leg_thickness, l.neck_length,
-                        l.head_length, l.head_height, l.head_width, l.horn_length, l.ear_length, l.tail_length,
-                        l.udder_depth})
+  for (double length :
+       {l.body_length, l.body_height, l.body_width, l.leg_length, l.leg_thickness, l.neck_length, l.head_length,
+        l.head_height, l.head_width, l.horn_length, l.ear_length, l.tail_length, l.udder_depth})
     if (!(length > 0 && std::isfinite(length)))
       throw Error(Fault::bad_argument, "A cow needs positive, finite lengths; got " + std::to_string(length) + ".");
 }
@@ -390,8 +405,8 @@ RawMesh cow_cage(const CowLengths& lengths) {
 
   const Loft body = loft(cage, rings);
   const Ring &back = rings.front(), &front = rings.back();
-  const Vec2 bulge_back = Vec2(-0.02, 0) * lengths.body_length, bulge_front = 0.05 * lengths.head_length *
-                                                                              head_frame(lengths).along;
+  const Vec2 bulge_back = Vec2(-0.02, 0) * lengths.body_length,
+             bulge_front = 0.05 * lengths.head_length * head_frame(lengths).along;
   auto between = [](const Ring& ring, double down) { return Vec2(ring.top + down * (ring.bottom - ring.top)); };
   const auto rump_quads =
       cap(cage, body.rings.front(), between(back, 0.34) + bulge_back, between(back, 0.67) + bulge_back, false);

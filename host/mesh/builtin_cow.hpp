@@ -16,7 +16,7 @@ struct CowLengths {
   double head_length = 0.29;    ///< poll to nose
   double head_height = 0.185;   ///< forehead to jaw
   double head_width = 0.165;    ///< across the eyes
-  double horn_length = 0.15;    ///< one horn, along its curve
+  double horn_length = 0.14;    ///< one horn, along its curve
   double ear_length = 0.14;     ///< one ear
   double tail_length = 0.46;    ///< root to the tip of the tuft
   double udder_depth = 0.095;   ///< below the belly

@@ -1,17 +1,13 @@
 // A triangle mesh as it was found: nothing about it is promised yet.
 #pragma once
 
-#include <Eigen/Core>
+#include "host/types.hpp"
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace cowgpu {
-
-using Vec3 = Eigen::Vector3d;
-using Face = std::array<std::uint32_t, 3>; ///< vertex indices, counter-clockwise seen from outside
 
 /// A mesh as read or made. Vertices are never merged or reordered: the topology is the file's.
 struct RawMesh {

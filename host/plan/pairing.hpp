@@ -1,7 +1,7 @@
 // Greedy matching of triangles that share an edge.
 #pragma once
 
-#include "host/mesh/raw_mesh.hpp"
+#include "host/types.hpp"
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 // How far two sets of moments are apart, degree by degree.
 #pragma once
 
-#include "host/spectrum/coefficients.hpp"
+#include "host/coefficients.hpp"
 
 #include <span>
 #include <vector>

@@ -36,8 +36,8 @@ struct Accuracy {
 MomentProblem mass_problem(const Body& body, int lmax, double cut_off);
 
 /// Re-does the moments on a seeded sample of 256 triangles (Verify::sample; all if there are no more) or on all of them,
-/// on `backend` and on the second path: the CPU path for a Vulkan backend, the plain reference in double precision
-/// (sample) or extended precision (full) for the CPU path. Throws what the backends throw.
+/// on `backend` and on the second path: the CPU path for a Vulkan backend, the plain reference in extended precision
+/// for the CPU path. Throws what the backends throw.
 Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify how, std::uint64_t seed,
                         Monitor& monitor);
 

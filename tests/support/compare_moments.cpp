@@ -6,6 +6,7 @@
 #include "host/reference/moments.hpp"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <cstring>
 #include <iostream>
@@ -22,9 +23,9 @@ void check_against(Backend& backend, const MomentProblem& problem, std::span<con
   CHECK(result.reference_radius == problem.reference_radius);
   CHECK(result.density == problem.density);
   const DegreeErrors errors = cowgpu::compare(result, reference, plan::degree_bound(problem));
-  INFO(backend.facts().name << ", " << problem.faces.size() << " faces, lmax " << problem.lmax << ", worst at degree "
-                            << errors.worst_degree);
-  CHECK(errors.worst <= figure);
+  INFO(backend.facts().name);
+  check_at_most(errors.worst, figure,
+                fmt::format("{} faces, lmax {}, degree {}", problem.faces.size(), problem.lmax, errors.worst_degree));
 }
 
 } // namespace
@@ -80,8 +81,12 @@ void compare_path(Backend& backend, const MomentProblem& problem, double figure,
 
 void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure) {
   const DegreeErrors errors = cowgpu::compare(a, b, plan::degree_bound(problem));
-  INFO("worst at degree " << errors.worst_degree);
-  CHECK(errors.worst <= figure);
+  check_at_most(errors.worst, figure, fmt::format("degree {}", errors.worst_degree));
+}
+
+void check_at_most(double error, double figure, const std::string& what) {
+  INFO(what << ": " << error << " against " << figure);
+  CHECK(error <= figure);
 }
 
 bool same_bits(const Coefficients& a, const Coefficients& b) {

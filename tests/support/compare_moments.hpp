@@ -47,6 +47,9 @@ void compare_path(Backend& backend, const MomentProblem& problem, double figure,
 /// `a` and `b` are at most `figure` apart, as compare() counts it with the bound of `problem`.
 void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure);
 
+/// error <= figure, with the number in words: Catch prints what is below 1e-5 as 0.
+void check_at_most(double error, double figure, const std::string& what);
+
 /// The same bits, -0 and 0 told apart.
 bool same_bits(const Coefficients& a, const Coefficients& b);
 

@@ -1,4 +1,4 @@
-#include "host/spectrum/coefficients.hpp"
+#include "host/coefficients.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,52 @@
+// Bodies made here rather than read: what a user may write after "builtin:" where a mesh file is expected.
+#pragma once
+
+#include "host/mesh/raw_mesh.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cowgpu {
+
+/// A body as help texts list it.
+struct BuiltinBody {
+  std::string name;        ///< "sphere"
+  std::string usage;       ///< "sphere[:R][@LEVEL]"
+  std::string description; ///< one line, with sizes, levels and defaults
+};
+
+/// All bodies, in the order to list them.
+const std::vector<BuiltinBody>& builtin_bodies();
+
+/// No body has more faces than this.
+inline constexpr std::uint64_t builtin_face_limit = std::uint64_t{1} << 26;
+
+/// Makes a body. `spec` is what follows "builtin:", in this grammar, without spaces:
+///
+///     spec   = name [":" size {"," size}] ["@" level]
+///     name   = "cow" | "sphere" | "ellipsoid" | "box" | "tetrahedron"
+///     size   = a decimal number as C++ writes it ("2", "0.5", "1e-3"), from 1e-30 to 1e30; the sizes of one body
+///              differ by a factor of at most 1e6
+///     level  = decimal digits
+///
+///     body          sizes                    levels  default         made by                                     faces
+///     cow           none                     0 .. 8  @3              Loop subdivision of cow_cage()              820
+///     4^L sphere        radius                   0 .. 9  :1@4            icosahedron; midpoints pushed to the sphere
+///     20 4^L ellipsoid     semi-axes x, y, z        0 .. 9  @4, no sizes    the sphere's vertices, scaled 20 4^L box
+///     edges along x, y, z      0 .. 11 :1,1,1@0        12 triangles, split at midpoints             12 4^L tetrahedron
+///     edge                     0 .. 12 :1@0            regular, split at midpoints                   4 4^L
+///
+/// Lengths are in the body's own unit. All but the cow are centred on the origin; for the cow's axes and origin see
+/// builtin_cow.hpp. Every vertex of the sphere lies on it, so its volume is less than 4/3 pi R^3, by an amount of order
+/// 4^-L. Every body is closed, 2-manifold, of genus 0, counter-clockwise seen from outside, and made by correctly
+/// rounded operations only (no sine or cosine).
+///
+/// The name is "builtin:" and the spec in canonical form, with the sizes (shortest digits that read back the same) and
+/// the level that were used: "builtin:sphere:1@4". `sha256` is left empty.
+///
+/// Throws bad_argument if `spec` breaks the grammar or leaves these ranges, or would exceed builtin_face_limit.
+RawMesh builtin_mesh(std::string_view spec);
+
+} // namespace cowgpu

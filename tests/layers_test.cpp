@@ -1,0 +1,75 @@
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// What each folder may include, itself aside. Headers directly in host/ are "host".
+const std::map<std::string, std::set<std::string>> allowed = {
+    {"shaders", {}},
+    {"engine", {"shaders"}},
+    {"engine/kernels", {"engine", "shaders"}},
+    {"host", {}},
+    {"host/plan", {"host"}},
+    {"host/reference", {"host"}},
+    {"host/cpu", {"host", "host/plan", "host/reference"}},
+    {"host/gpu", {"host", "host/plan", "engine", "engine/kernels"}},
+    {"host/mesh", {"host"}},
+    {"host/io", {"host", "host/mesh"}},
+    {"host/spectrum", {"host", "host/mesh", "host/plan", "host/reference"}},
+    {"host/report", {"host", "host/mesh", "host/io", "host/spectrum"}},
+    {"host/cli", {"host", "host/mesh", "host/io", "host/spectrum", "host/report", "host/plan"}},
+};
+
+struct Include {
+  std::string from, line, to;
+};
+
+std::vector<Include> project_includes(const fs::path& root) {
+  std::vector<Include> found;
+  for (const char* top : {"shaders", "engine", "host"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string suffix = entry.path().extension();
+      if (suffix != ".hpp" && suffix != ".cpp" && suffix != ".h" && suffix != ".comp" && suffix != ".glsl") continue;
+      std::ifstream file(entry.path());
+      for (std::string line; std::getline(file, line);)
+        if (line.rfind("#include \"", 0) == 0) {
+          const std::string path = line.substr(10, line.find('"', 10) - 10);
+          found.push_back({fs::relative(entry.path(), root), line, path});
+        }
+    }
+  return found;
+}
+
+} // namespace
+
+TEST_CASE("includes point one way between the folders", "[layers]") {
+  const auto includes = project_includes(COWGPU_SOURCE);
+  REQUIRE(includes.size() > 50);
+  for (const Include& include : includes) {
+    const std::string from = fs::path(include.from).parent_path(), to = fs::path(include.to).parent_path();
+    INFO(include.from << ": " << include.line);
+    REQUIRE(allowed.count(from) == 1);
+    CHECK((from == to || allowed.at(from).count(to) == 1));
+  }
+}
+
+TEST_CASE("only the engine names Vulkan", "[layers]") {
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(COWGPU_SOURCE) / "host")) {
+    if (!entry.is_regular_file()) continue;
+    ++files;
+    std::ifstream file(entry.path());
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    INFO(entry.path());
+    CHECK(text.find("Vk") == std::string::npos);
+    CHECK(text.find("volk") == std::string::npos);
+  }
+  CHECK(files > 20);
+}
