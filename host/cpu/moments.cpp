@@ -84,7 +84,7 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
   std::mutex progress_mutex;
   parallel_for(threads, hand.size(), [&](std::size_t task, unsigned thread) {
     const FlushDenormals flush;
-    partial[task] = hwy::AllocateAligned<double>(layout.size());
+    partial[task] = hwy::AllocateAligned<double>(std::max<std::size_t>(layout.size(), 1)); // lmax 0 has none
     if (!partial[task]) throw std::bad_alloc();
     std::fill_n(partial[task].get(), layout.size(), 0.0);
     for (const std::uint32_t group : hand[task]) {

@@ -31,17 +31,17 @@ inline constexpr std::uint64_t builtin_face_limit = std::uint64_t{1} << 26;
 ///              differ by a factor of at most 1e6
 ///     level  = decimal digits
 ///
-///     body          sizes                    levels  default         made by                                     faces
-///     cow           none                     0 .. 8  @3              Loop subdivision of cow_cage()              820
-///     4^L sphere        radius                   0 .. 9  :1@4            icosahedron; midpoints pushed to the sphere
-///     20 4^L ellipsoid     semi-axes x, y, z        0 .. 9  @4, no sizes    the sphere's vertices, scaled 20 4^L box
-///     edges along x, y, z      0 .. 11 :1,1,1@0        12 triangles, split at midpoints             12 4^L tetrahedron
-///     edge                     0 .. 12 :1@0            regular, split at midpoints                   4 4^L
+///     body         sizes              levels   default      faces at level L, and how they are made
+///     cow          none               0 .. 8   @3           820 4^L: Loop subdivision of cow_cage()
+///     sphere       radius             0 .. 9   :1@4         20 4^L: icosahedron, midpoints pushed to the sphere
+///     ellipsoid    semi-axes x, y, z  0 .. 9   @4           20 4^L: the sphere's vertices, scaled; sizes required
+///     box          edges x, y, z      0 .. 11  :1,1,1@0     12 4^L: split at midpoints, the surface unchanged
+///     tetrahedron  edge               0 .. 12  :1@0         4 4^L: regular, split at midpoints, likewise
 ///
 /// Lengths are in the body's own unit. All but the cow are centred on the origin; for the cow's axes and origin see
 /// builtin_cow.hpp. Every vertex of the sphere lies on it, so its volume is less than 4/3 pi R^3, by an amount of order
-/// 4^-L. Every body is closed, 2-manifold, of genus 0, counter-clockwise seen from outside, and made by correctly
-/// rounded operations only (no sine or cosine).
+/// 4^-L. Every body is closed, 2-manifold, of genus 0, counter-clockwise seen from outside, and made without sine
+/// or cosine, so the vertices do not depend on the mathematical library.
 ///
 /// The name is "builtin:" and the spec in canonical form, with the sizes (shortest digits that read back the same) and
 /// the level that were used: "builtin:sphere:1@4". `sha256` is left empty.

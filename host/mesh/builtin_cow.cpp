@@ -12,7 +12,7 @@
 #include <utility>
 
 // Only the right half (z >= 0) is modelled: half rings lofted from rump to nose, and limbs grown out of chosen faces;
-// then it is mirrored. No sine or cosine is taken, so that the vertices are the same bits on every machine.
+// then it is mirrored. No sine or cosine is taken, so that the vertices do not depend on the mathematical library.
 
 namespace cowgpu {
 namespace {

@@ -24,7 +24,8 @@ struct CowLengths {
 
 /// The cage. Cow coordinates: x forward, y up, z = x cross y to the cow's right; the ground is y = 0, the middle of the
 /// trunk x = 0, the plane of symmetry z = 0. Closed, 2-manifold, genus 0, counter-clockwise seen from outside, exactly
-/// symmetric under z -> -z. The name is "cow cage". Throws bad_argument if a length is not positive and finite.
+/// symmetric under z -> -z. With the default lengths neither the cage nor the smooth cow (levels 1 to 5) intersects
+/// itself. The name is "cow cage". Throws bad_argument if a length is not positive and finite.
 RawMesh cow_cage(const CowLengths& lengths = {});
 
 } // namespace cowgpu

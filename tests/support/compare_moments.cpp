@@ -12,24 +12,6 @@
 #include <iostream>
 
 namespace cowgpu::test {
-namespace {
-
-void check_against(Backend& backend, const MomentProblem& problem, std::span<const long double> reference,
-                   double figure) {
-  const Coefficients result = moments(backend, problem);
-  REQUIRE(result.values.size() == Coefficients::count(problem.lmax));
-  REQUIRE(result.lmax == problem.lmax);
-  CHECK(result.origin == problem.origin);
-  CHECK(result.reference_radius == problem.reference_radius);
-  CHECK(result.density == problem.density);
-  const DegreeErrors errors = cowgpu::compare(result, reference, plan::degree_bound(problem));
-  INFO(backend.facts().name);
-  check_at_most(errors.worst, figure,
-                fmt::format("{} faces, lmax {}, degree {}", problem.faces.size(), problem.lmax, errors.worst_degree));
-}
-
-} // namespace
-
 MomentProblem moment_problem(const RawMesh& mesh, int lmax, const Vec3& origin) {
   MomentProblem problem;
   problem.vertices = mesh.vertices;
@@ -67,7 +49,7 @@ void Paths::each(const std::function<void(Backend&)>& check) {
 
 void Paths::compare(const MomentProblem& problem, double figure, double tolerance) {
   const auto reference = reference::moments<long double>(problem, tolerance);
-  each([&](Backend& backend) { check_against(backend, problem, reference, figure); });
+  each([&](Backend& backend) { compare_path(backend, problem, reference, figure); });
 }
 
 Coefficients moments(Backend& backend, const MomentProblem& problem, RunReport* report) {
@@ -75,13 +57,23 @@ Coefficients moments(Backend& backend, const MomentProblem& problem, RunReport* 
   return backend.moments(problem, silent, report);
 }
 
-void compare_path(Backend& backend, const MomentProblem& problem, double figure, double tolerance) {
-  check_against(backend, problem, reference::moments<long double>(problem, tolerance), figure);
+void compare_path(Backend& backend, const MomentProblem& problem, std::span<const long double> reference,
+                  double figure) {
+  const Coefficients result = moments(backend, problem);
+  REQUIRE(result.values.size() == Coefficients::count(problem.lmax));
+  REQUIRE(result.lmax == problem.lmax);
+  CHECK(result.origin == problem.origin);
+  CHECK(result.reference_radius == problem.reference_radius);
+  CHECK(result.density == problem.density);
+  const DegreeErrors errors = cowgpu::compare(result, reference, plan::degree_bound(problem));
+  check_at_most(errors.worst, figure,
+                fmt::format("{}, {} faces, lmax {}, degree {}", backend.facts().type, problem.faces.size(), problem.lmax,
+                            errors.worst_degree));
 }
 
 void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure) {
   const DegreeErrors errors = cowgpu::compare(a, b, plan::degree_bound(problem));
-  check_at_most(errors.worst, figure, fmt::format("degree {}", errors.worst_degree));
+  check_at_most(errors.worst, figure, fmt::format("lmax {}, degree {}", problem.lmax, errors.worst_degree));
 }
 
 void check_at_most(double error, double figure, const std::string& what) {

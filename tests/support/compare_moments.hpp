@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace cowgpu::test {
@@ -41,8 +42,9 @@ private:
 /// Moments without anybody watching.
 Coefficients moments(Backend& backend, const MomentProblem& problem, RunReport* report = nullptr);
 
-/// What Paths::compare does, for one path.
-void compare_path(Backend& backend, const MomentProblem& problem, double figure, double tolerance = 0);
+/// What Paths::compare does, for one path and a reference at hand.
+void compare_path(Backend& backend, const MomentProblem& problem, std::span<const long double> reference,
+                  double figure);
 
 /// `a` and `b` are at most `figure` apart, as compare() counts it with the bound of `problem`.
 void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure);

@@ -176,9 +176,9 @@ RawMesh shuffled(RawMesh mesh, std::uint32_t seed) {
   return mesh;
 }
 
-RawMesh some_faces(RawMesh mesh, std::size_t count) {
+RawMesh some_faces(RawMesh mesh, std::size_t count, std::size_t stride) {
   std::vector<Face> chosen;
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(mesh.faces[i * mesh.faces.size() / count]);
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(mesh.faces[i * stride % mesh.faces.size()]);
   mesh.faces = std::move(chosen);
   return mesh;
 }

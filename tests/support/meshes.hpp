@@ -36,8 +36,8 @@ RawMesh scaled(RawMesh mesh, const Vec3& factors);
 RawMesh rotated(RawMesh mesh, const Eigen::Matrix3d& rotation);
 /// Vertices, faces and the corner each face begins with in random order.
 RawMesh shuffled(RawMesh mesh, std::uint32_t seed);
-/// `count` faces, every n-th of the mesh: in part neighbours, in part not.
-RawMesh some_faces(RawMesh mesh, std::size_t count);
+/// `count` faces, stepping through the mesh by `stride`: neighbours mostly where that is 1.
+RawMesh some_faces(RawMesh mesh, std::size_t count, std::size_t stride = 1);
 
 /// cow.off, found in $COWGPU_MESHES or in data/meshes and known by its checksum.
 std::optional<ClosedSurface> benchmark_cow();
