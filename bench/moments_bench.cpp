@@ -176,7 +176,7 @@ private:
       no_vulkan_ = error.what();
     }
     for (Path& path : paths_)
-      for (int i = 0; i < 3; ++i) path.peak = std::max(path.peak, path.backend->measured_peak());
+      for (int i = 0; i < 5; ++i) path.peak = std::max(path.peak, path.backend->measured_peak());
   }
 
   MomentProblem problem(int lmax, double cut_off = default_cut_off) const {

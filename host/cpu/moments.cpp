@@ -1,6 +1,7 @@
 #include "host/cpu/moments.hpp"
 
 #include "host/cpu/moments_kernel.hpp"
+#include "host/flush_denormals.hpp"
 #include "host/parallel.hpp"
 #include "host/plan/moments.hpp"
 

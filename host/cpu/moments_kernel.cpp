@@ -241,10 +241,6 @@ std::string SimdName() { return hwy::TargetName(HWY_TARGET); }
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#if defined(__x86_64__)
-#include <xmmintrin.h>
-#endif
-
 namespace cowgpu::cpu {
 
 HWY_EXPORT(AccumulateGroup);
@@ -273,14 +269,6 @@ void accumulate_group(const plan::Moments& plan, std::size_t group, const Partia
                       MomentsWorkspace& workspace, double* partial) {
   HWY_DYNAMIC_DISPATCH(AccumulateGroup)(plan, group, layout, workspace, partial);
 }
-
-#if defined(__x86_64__)
-FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040U); }
-FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
-#else
-FlushDenormals::FlushDenormals() = default;
-FlushDenormals::~FlushDenormals() { (void)saved_; }
-#endif
 
 } // namespace cowgpu::cpu
 #endif

@@ -43,16 +43,4 @@ std::string simd_name();
 void accumulate_group(const plan::Moments& plan, std::size_t group, const PartialLayout& layout,
                       MomentsWorkspace& workspace, double* partial);
 
-/// Denormals count as zero while one lives, on this thread: rows of vertices near the z axis decay through them.
-class FlushDenormals {
-public:
-  FlushDenormals();
-  ~FlushDenormals();
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
-private:
-  unsigned saved_ = 0;
-};
-
 } // namespace cowgpu::cpu

@@ -3,6 +3,7 @@
 
 #include "engine/gpu.hpp"
 #include "engine/kernels/peak.hpp"
+#include "host/flush_denormals.hpp"
 #include "host/gpu/environment.hpp"
 #include "host/gpu/errors.hpp"
 #include "host/gpu/moments.hpp"
@@ -57,6 +58,7 @@ private:
 
 std::unique_ptr<Backend> make_gpu_backend(const GpuOptions& options) {
   gpu::prepare_environment();
+  const FlushDenormals flush; // the threads of a software device start now and inherit it
   return gpu::translated([&] { return std::make_unique<GpuBackend>(options); });
 }
 
