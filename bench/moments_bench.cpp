@@ -316,7 +316,7 @@ private:
     for (const Path& path : paths_) {
       const bool one = &path == &paths_[0]; // one thread is compared with one thread
       const double ratio = median_ratio(one ? finest.one : finest.all, path.wall);
-      say("{:<18} {:>9}   {:>28} {:>28}\n", path.name, milliseconds(median(path.wall)), fmt::format("{:.0f}", ratio),
+      say("{:<18} {:>9}   {:>28} {:>28}\n", path.name, milliseconds(median(path.wall)), fmt::format("{:.3g}", ratio),
           fmt::format("{:.0e}", ratio * growth));
       Json j = path.times();
       j["lattice_over_ours"] = ratio;

@@ -13,6 +13,7 @@ enum class Failure {
   out_of_range,///< a limit of the device is exceeded
   vulkan,      ///< a Vulkan call failed
   device_lost, ///< VK_ERROR_DEVICE_LOST, now or earlier on this device
+  cut_short,   ///< the device ended a loop early, so the result is not whole
   stopped,     ///< the caller's hook asked to stop
 };
 

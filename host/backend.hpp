@@ -80,7 +80,7 @@ public:
   /// on the same device gives the same bits.
   virtual Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report = nullptr) = 0;
 
-  /// Upper bound of the memory moments() allocates beside its input and its result.
+  /// Upper bound of the memory moments() allocates, its result included.
   virtual MemoryNeed moments_memory(const MomentProblem& problem) const = 0;
 
   /// Measured multiply-add peak of double precision, in flops per second (a multiply-add counts two).

@@ -21,6 +21,7 @@ layout(std430, binding = MOMENTS_GROUPS) readonly buffer Groups { double inputs[
 layout(std430, binding = MOMENTS_DEGREES) readonly buffer Degrees { uint last_degrees[]; };
 layout(std430, binding = MOMENTS_STATE) buffer State { double state[]; };
 layout(std430, binding = MOMENTS_PARTIAL) buffer Partial { double partial[]; };
+layout(std430, binding = MOMENTS_STEPS) buffer Steps { uint steps_done[]; };
 layout(push_constant) uniform Push { MomentsPush push; };
 
 struct Column { double vc, vd, er, ei, tr, ti; };
@@ -127,6 +128,8 @@ void main() {
     Phase first_phase = Phase(det_c, 0, det_d, 0);
     [[unroll]] for (int m = 1; m < LEVELS; ++m) first_phase = turn(first_phase, c_cos, -c_sin, d_cos, -d_sin);
 
+    // Software devices end loops early without a word; the host compares this count with what it asked for.
+    uint steps = 0;
     uint sums = own_partial + lane;
     for (int degree = int(push.first_degree); degree <= last; degree += LEVELS) {
       // Three columns of each level's input; column i of a level sits in slot i mod 3.
@@ -140,6 +143,7 @@ void main() {
 
       const int end = degree + 3 * LEVELS - 2;
       for (int ix = 1; ix <= end; ix += 3) {
+        ++steps;
         [[unroll]] for (int p = 0; p < 3; ++p) {
           window[(p + 2) % 3] = load_column(ix + p + 1);
           double q[2 * LEVELS];
@@ -190,6 +194,7 @@ void main() {
                                         -factor * c.ti));
       }
     }
+    if (lane == 0) steps_done[group] += steps;
     if (!ROWS_IN_BUFFER && group_last > last)
       for (int i = 0; i <= last + LEVELS; ++i) store_state(i, load_column(i));
   }

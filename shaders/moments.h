@@ -14,7 +14,8 @@
 #define MOMENTS_DEGREES 1 // last degree of each group
 #define MOMENTS_STATE 2   // rows between dispatches: [group][column][MOMENTS_ROWS][lane]
 #define MOMENTS_PARTIAL 3 // one partial sum a workgroup
-#define MOMENTS_BINDINGS 4
+#define MOMENTS_STEPS 4   // of each group: loop iterations that really ran, see moments.comp
+#define MOMENTS_BINDINGS 5
 
 #define MOMENTS_SUM_PARTIAL 0 // read and cleared
 #define MOMENTS_SUM_TOTAL 1   // added to

@@ -56,11 +56,19 @@ public:
   std::uint64_t sweep_iterations(std::uint32_t degree) const { return (degree + 3 * shape_.levels) / 3; }
   std::uint64_t sweep_doubles(std::uint32_t degree) const { return sweep_iterations(degree) * 3 * 2 * shape_.levels; }
 
-  // Loop iterations one group costs an invocation for degrees first ... last.
-  std::uint64_t iterations(std::uint32_t first, std::uint32_t last, bool whole) const {
-    std::uint64_t count = 2 + (last + 4 * shape_.levels) / 4 + 1;
-    if (whole) count += 2 * (std::uint64_t(last) + shape_.levels + 1); // rows loaded and stored
-    for (std::uint32_t degree = first; degree <= last; degree += shape_.levels) count += 1 + sweep_iterations(degree);
+  // Loop iterations one group costs an invocation for degrees first ... last, the one that ends each loop counted too;
+  // `state` if rows are loaded and stored.
+  std::uint64_t iterations(std::uint32_t first, std::uint32_t last, bool state) const {
+    std::uint64_t count = 8 + (last + 4 * shape_.levels + 3) / 4;
+    if (state) count += 2 * (std::uint64_t(last) + shape_.levels + 1);
+    for (std::uint32_t degree = first; degree <= last; degree += shape_.levels) count += 2 + sweep_iterations(degree);
+    return count;
+  }
+
+  // Iterations of the innermost loop for a group that ends at degree `last`.
+  std::uint64_t steps(std::uint32_t last) const {
+    std::uint64_t count = 0;
+    for (std::uint32_t degree = 1; degree <= last; degree += shape_.levels) count += sweep_iterations(degree);
     return count;
   }
 
@@ -127,7 +135,7 @@ MomentsShape moments_shape(const GpuFacts& facts, MomentsShape wanted) {
 std::uint64_t moments_device_bytes(const MomentsShape& shape, const GpuFacts& facts, int lmax, std::uint64_t groups) {
   const Layout layout(shape, facts.largest_range, lmax);
   const std::uint64_t resident = std::min(groups, layout.chunk);
-  return groups * (8 * MOMENTS_INPUTS * shape.lanes + 4) + 8 * (layout.partial_doubles() + layout.total_doubles()) +
+  return groups * (8 * MOMENTS_INPUTS * shape.lanes + 8) + 8 * (layout.partial_doubles() + layout.total_doubles()) +
          (layout.keeps_state() ? resident * layout.state_bytes() : 0);
 }
 
@@ -159,8 +167,10 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
   Buffer state(device, layout.keeps_state() ? resident * layout.state_bytes() : 16, "the recursion's rows");
   pairs.write(std::as_bytes(input.pairs));
   degrees.write(std::as_bytes(input.last_degrees));
+  Buffer steps(device, input.last_degrees.size_bytes(), "the step counts");
   partial.clear();
   total.clear();
+  steps.clear();
 
   double all = 0, done = 0;
   for (const std::uint32_t l : input.last_degrees) all += double(l + 1) * double(l + 2);
@@ -197,7 +207,8 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
             {&pairs, first * input_bytes, count * input_bytes},
             {&degrees, first * 4, std::uint64_t(count) * 4},
             {&state, 0, layout.keeps_state() ? std::min<std::uint64_t>(count, resident) * layout.state_bytes() : 0},
-            {&partial, 0, 8 * slice.size * shape.workgroups}};
+            {&partial, 0, 8 * slice.size * shape.workgroups},
+            {&steps, first * 4, std::uint64_t(count) * 4}};
         job.dispatch(kernel, ranges, push_bytes(push), std::min(shape.workgroups, end - begin));
         for (std::uint32_t g = begin; g < end; ++g) {
           const double to = std::min(last_degree(g), slice.last), from = slice.first - 1.0;
@@ -214,6 +225,15 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
     }
   }
   finish_job();
+
+  std::vector<std::uint32_t> steps_done(groups);
+  steps.read(std::as_writable_bytes(std::span(steps_done)));
+  for (std::uint32_t g = 0; g < groups; ++g)
+    if (steps_done[g] != layout.steps(input.last_degrees[g]))
+      throw Error(Failure::cut_short, 0,
+                  fmt::format("the device {} ended a loop early: group {} of {} ran {} of {} steps; the result would be "
+                              "wrong; use --device cpu and report this",
+                              device.name(), g, groups, steps_done[g], layout.steps(input.last_degrees[g])));
 
   for (const Slice& slice : layout.slices) {
     std::vector<double> part(slice.size);

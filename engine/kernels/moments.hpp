@@ -38,7 +38,7 @@ std::uint64_t moments_device_bytes(const MomentsShape& shape, const GpuFacts& fa
 /// Adds up t_l[m] 2^start_exponent for l = 1 ... lmax over all pairs. `sums` has (lmax+1)(lmax+2) doubles: real and
 /// imaginary parts, sorted by l, then m; degree 0 is left alone. Dispatches are bounded by the shape's iteration budget;
 /// the order of all additions depends on the input and the shape alone. Throws Error(out_of_range) for a shape the device
-/// cannot take, Error(vulkan), Error(device_lost), Error(stopped).
+/// cannot take, Error(cut_short) if the device ended a loop early, Error(vulkan), Error(device_lost), Error(stopped).
 void moments(Device& device, const MomentsShape& shape, const MomentsInput& input, std::span<double> sums,
              const Hook& hook);
 

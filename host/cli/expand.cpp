@@ -81,6 +81,14 @@ void check_outputs(const Options& options) {
     throw Error(Fault::bad_argument, fmt::format("--of {}: there is no such expansion; there is: mass", options.of));
 }
 
+// What the run needs at most: the result, and either the computation or its check.
+MemoryNeed memory_need(const Options& options, const MomentProblem& problem, const Backend& backend) {
+  MemoryNeed need = backend.moments_memory(problem);
+  need.host = std::max(need.host, 16 * Coefficients::count(options.lmax) +
+                                      verify_bytes(problem, backend, parse_verify(options.verify)));
+  return need;
+}
+
 void check_memory(const MemoryNeed& need, const Backend& backend) {
   const DeviceFacts cpu = make_cpu_backend(1)->facts();
   const bool shared = backend.facts().type == "software" || backend.facts().type == "integrated";
@@ -93,7 +101,7 @@ void check_memory(const MemoryNeed& need, const Backend& backend) {
 
 void write_plan(const Options& options, const Body& body, const MomentProblem& problem, const Backend& backend) {
   const plan::Moments plan = plan::moments(problem, int(backend.facts().subgroup));
-  const MemoryNeed need = backend.moments_memory(problem);
+  const MemoryNeed need = memory_need(options, problem, backend);
   write_stdout(mesh_line(body.surface.mesh()) + "\n");
   write_stdout(fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, {:.9g}) "
                            "({}), R = {:.9g}\n",
@@ -102,8 +110,8 @@ void write_plan(const Options& options, const Body& body, const MomentProblem& p
   write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
   write_stdout(fmt::format("work: {} pairs of triangles, {:.3g} of {:.3g} recursion entries after the cut-off {:.0e}\n",
                            plan.pair_count, plan.elements, plan.full_elements, options.cut_off));
-  write_stdout(fmt::format("memory: at most {} MiB on the host and {} MiB on the device, beside the mesh; JSON of about "
-                           "{} MiB\n",
+  write_stdout(fmt::format("memory: at most {} MiB on the host and {} MiB on the device, beside the mesh and the program; "
+                           "JSON of about {} MiB\n",
                            (need.host >> 20) + 1, (need.device + (1 << 20) - 1) >> 20, (json_bytes(options.lmax) >> 20) + 1));
 }
 
@@ -149,7 +157,7 @@ void run(const Options& options, Common& common) {
     notes.push_back(note);
   }
   const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
-  check_memory(backend->moments_memory(problem), *backend);
+  check_memory(memory_need(options, problem, *backend), *backend);
   if (options.dry_run) {
     write_plan(options, body, problem, *backend);
     return;

@@ -6,7 +6,6 @@
 #include "host/plan/moments.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <mutex>
@@ -45,14 +44,12 @@ std::vector<std::vector<std::uint32_t>> deal(const plan::Moments& plan, std::siz
   return hand;
 }
 
-// From the partial sums' columns to rows sorted by l, then m.
-std::vector<double> gather(const plan::Moments& plan, const PartialLayout& layout,
-                           const std::vector<Partial>& partial, unsigned threads) {
-  std::vector<double> sums(2 * Coefficients::count(plan.lmax), 0.0);
-  sums[0] = std::ldexp(plan.sum_of_dets, plan.start_exponent);
+// Adds partial sums, in their order, to rows sorted by l, then m, and clears them for the next ones.
+void gather(const plan::Moments& plan, const PartialLayout& layout, std::span<const Partial> partial, unsigned threads,
+            std::vector<double>& sums) {
   parallel_for(threads, layout.sweeps(), [&](std::size_t n, unsigned) {
     for (const auto& part : partial) {
-      const double* column = part.get() + layout.offset[n];
+      double* column = part.get() + layout.offset[n];
       for (int j = 0; j < degrees_per_sweep; ++j) {
         const int l = 1 + int(n) * degrees_per_sweep + j;
         if (l > plan.lmax) break;
@@ -63,9 +60,9 @@ std::vector<double> gather(const plan::Moments& plan, const PartialLayout& layou
           row[2 * m + 1] += from[1];
         }
       }
+      std::fill(column, part.get() + layout.offset[n + 1], 0.0);
     }
   });
-  return sums;
 }
 
 } // namespace
@@ -78,26 +75,36 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
 
   const PartialLayout layout(plan.lmax);
   const auto hand = deal(plan, partials(layout));
-  std::vector<Partial> partial(hand.size());
+  // Hands are played in rounds, one to a thread, so that no more partial sums exist than threads.
+  const std::size_t seats = std::min<std::size_t>(threads, hand.size());
+  std::vector<Partial> partial;
   std::vector<MomentsWorkspace> workspaces;
-  for (unsigned t = 0; t < threads; ++t) workspaces.emplace_back(plan.lmax);
-  std::atomic<double> done{0};
-  std::mutex progress_mutex;
-  parallel_for(threads, hand.size(), [&](std::size_t task, unsigned thread) {
-    const FlushDenormals flush;
-    partial[task] = hwy::AllocateAligned<double>(std::max<std::size_t>(layout.size(), 1)); // lmax 0 has none
-    if (!partial[task]) throw std::bad_alloc();
-    std::fill_n(partial[task].get(), layout.size(), 0.0);
-    for (const std::uint32_t group : hand[task]) {
-      check_stop(monitor);
-      accumulate_group(plan, group, layout, workspaces[thread], partial[task].get());
-      const double l = plan.last_degree[group];
-      done = done + 0.5 * plan.lanes * (l + 1) * (l + 2);
-      if (const std::unique_lock lock(progress_mutex, std::try_to_lock); lock)
-        monitor.progress("moments", plan.elements > 0 ? std::min(1.0, done / plan.elements) : 1.0);
-    }
-  });
-  Coefficients result = plan::finish(problem, plan, gather(plan, layout, partial, threads));
+  for (std::size_t seat = 0; seat < seats; ++seat) {
+    partial.push_back(hwy::AllocateAligned<double>(std::max<std::size_t>(layout.size(), 1))); // lmax 0 has none
+    if (!partial.back()) throw std::bad_alloc();
+    workspaces.emplace_back(plan.lmax);
+  }
+  std::vector<double> sums(2 * Coefficients::count(plan.lmax), 0.0);
+  sums[0] = std::ldexp(plan.sum_of_dets, plan.start_exponent);
+  double done = 0;
+  std::mutex done_mutex;
+  for (std::size_t first = 0; first < hand.size(); first += seats) {
+    const std::size_t round = std::min(seats, hand.size() - first);
+    parallel_for(threads, round, [&](std::size_t seat, unsigned) {
+      const FlushDenormals flush;
+      if (first == 0) std::fill_n(partial[seat].get(), layout.size(), 0.0);
+      for (const std::uint32_t group : hand[first + seat]) {
+        check_stop(monitor);
+        accumulate_group(plan, group, layout, workspaces[seat], partial[seat].get());
+        const double l = plan.last_degree[group];
+        const std::lock_guard lock(done_mutex);
+        done += 0.5 * plan.lanes * (l + 1) * (l + 2);
+        monitor.progress("moments", std::min(1.0, done / plan.elements));
+      }
+    });
+    gather(plan, layout, {partial.data(), round}, threads, sums);
+  }
+  Coefficients result = plan::finish(problem, plan, sums);
   if (report) {
     report->seconds = seconds_since(start);
     report->setup_seconds = setup;
@@ -111,9 +118,9 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
 
 std::uint64_t moments_bytes(const MomentProblem& problem, unsigned threads) {
   const PartialLayout layout(problem.lmax);
-  const std::uint64_t sums = 16 * Coefficients::count(problem.lmax);
-  const std::uint64_t rows = std::uint64_t(threads) * 640 * (std::uint64_t(problem.lmax) + 48);
-  return plan::bytes(problem) + partials(layout) * layout.size() * 8 + sums + rows;
+  const std::uint64_t seats = std::min<std::uint64_t>(threads, partials(layout));
+  return plan::bytes(problem) + seats * (8 * layout.size() + 640 * (std::uint64_t(problem.lmax) + 48)) +
+         32 * Coefficients::count(problem.lmax);
 }
 
 } // namespace cowgpu::cpu

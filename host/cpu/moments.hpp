@@ -9,8 +9,8 @@ namespace cowgpu::cpu {
 /// threads.
 Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& monitor, RunReport* report);
 
-/// Bound of the bytes moments() allocates: 304 a face and 8 a vertex for the plan, P (lmax^2 + 33 lmax) * 8 for the P = 8
-/// to 64 partial sums, 16 a coefficient, 640 (lmax + 48) a thread.
+/// Bound of the bytes moments() allocates, its result included: 304 a face and 8 a vertex for the plan, 32 a coefficient,
+/// and for each thread (64 at most) a partial sum of 8 (lmax^2 + 33 lmax) and rows of 640 (lmax + 48).
 std::uint64_t moments_bytes(const MomentProblem& problem, unsigned threads);
 
 } // namespace cowgpu::cpu

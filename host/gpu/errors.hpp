@@ -12,6 +12,7 @@ inline Fault fault_of(engine::Failure failure) {
   case engine::Failure::no_device: return Fault::no_device;
   case engine::Failure::no_fp64: return Fault::no_fp64;
   case engine::Failure::out_of_range: return Fault::too_large;
+  case engine::Failure::cut_short:
   case engine::Failure::vulkan: return Fault::device_failed;
   case engine::Failure::device_lost: return Fault::device_lost;
   case engine::Failure::stopped: return Fault::interrupted;

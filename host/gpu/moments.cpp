@@ -66,7 +66,7 @@ MemoryNeed moments_memory(const engine::GpuFacts& facts, const engine::MomentsSh
                           const MomentProblem& problem) {
   const std::uint64_t groups = problem.faces.size() / shape.lanes + 1; // every face alone in its pair at worst
   MemoryNeed need;
-  need.host = plan::bytes(problem) + groups * shape.lanes * 128 + 32 * Coefficients::count(problem.lmax);
+  need.host = plan::bytes(problem) + groups * shape.lanes * 128 + 48 * Coefficients::count(problem.lmax);
   need.device = engine::moments_device_bytes(shape, facts, problem.lmax, groups);
   return need;
 }

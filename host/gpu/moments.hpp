@@ -13,7 +13,7 @@ engine::MomentsShape shape_from(const GpuOptions& options);
 Coefficients moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const MomentProblem& problem,
                      Monitor& monitor, RunReport* report);
 
-/// Host: as the CPU path's plan, 128 bytes a pair and the sums. Device: see engine::moments_device_bytes().
+/// Host: the plan, 128 bytes a pair and 48 a coefficient. Device: see engine::moments_device_bytes().
 MemoryNeed moments_memory(const engine::GpuFacts& facts, const engine::MomentsShape& shape,
                           const MomentProblem& problem);
 

@@ -120,11 +120,14 @@ std::vector<Real> moments(const MomentProblem& problem, double tolerance = 0, co
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return triangles[a].last > triangles[b].last; });
 
+  // Eight partial sums whatever the machine, at most as many at once as there are threads.
   const std::size_t blocks = (faces + block - 1) / block;
   const std::size_t tasks = std::min<std::size_t>(blocks, 8);
-  std::vector<std::vector<Real>> partial(tasks);
-  parallel_for(0, tasks, [&](std::size_t task, unsigned) {
-    auto& sum = partial[task];
+  const std::size_t at_once = std::min<std::size_t>(tasks, all_threads());
+  std::vector<std::vector<Real>> partial(at_once);
+  std::vector<Real> result(2 * Coefficients::count(problem.lmax), Real(0));
+  const Real unit = Real(problem.density) * radius * radius * radius;
+  const auto run_task = [&](std::size_t task, std::vector<Real>& sum) {
     sum.assign(2 * Coefficients::count(problem.lmax), Real(0));
     const Real y00 = 1 / sqrt(4 * acos(Real(-1)));
     for (std::size_t b = task; b < blocks; b += tasks) {
@@ -161,11 +164,13 @@ std::vector<Real> moments(const MomentProblem& problem, double tolerance = 0, co
         }
       }
     }
-  });
-  std::vector<Real> result(2 * Coefficients::count(problem.lmax), Real(0));
-  const Real unit = Real(problem.density) * radius * radius * radius;
-  for (const auto& sum : partial)
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] += unit * sum[i];
+  };
+  for (std::size_t first = 0; first < tasks; first += at_once) {
+    const std::size_t round = std::min(at_once, tasks - first);
+    parallel_for(0, round, [&](std::size_t k, unsigned) { run_task(first + k, partial[k]); });
+    for (std::size_t k = 0; k < round; ++k)
+      for (std::size_t i = 0; i < result.size(); ++i) result[i] += unit * partial[k][i];
+  }
   return result;
 }
 

@@ -57,6 +57,17 @@ MomentProblem mass_problem(const Body& body, int lmax, double cut_off) {
   return problem;
 }
 
+std::uint64_t verify_bytes(const MomentProblem& problem, const Backend& backend, Verify how) {
+  if (how == Verify::none) return 0;
+  const std::uint64_t count = Coefficients::count(problem.lmax);
+  if (backend.facts().type != "cpu") return 32 * count + make_cpu_backend()->moments_memory(problem).host;
+  // One partial sum a thread and the total, and rows of 16 triangles a thread.
+  const std::uint64_t threads = std::min(8U, all_threads());
+  return 16 * count + sizeof(long double) * 2 * count * (threads + 1) +
+         threads * 16 * 3 * sizeof(reference::ComplexOf<long double>) * (std::uint64_t(problem.lmax) + 1) +
+         std::min<std::uint64_t>(problem.faces.size(), how == Verify::full ? problem.faces.size() : sample_size) * 256;
+}
+
 Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify how, std::uint64_t seed,
                         Monitor& monitor) {
   Accuracy accuracy;

@@ -35,6 +35,9 @@ struct Accuracy {
 /// The problem of a body's mass moments. It refers to the body.
 MomentProblem mass_problem(const Body& body, int lmax, double cut_off);
 
+/// Bound of the host bytes verify_moments() allocates beside what the backend needs for the same triangles.
+std::uint64_t verify_bytes(const MomentProblem& problem, const Backend& backend, Verify how);
+
 /// Re-does the moments on a seeded sample of 256 triangles (Verify::sample; all if there are no more) or on all of them,
 /// on `backend` and on the second path: the CPU path for a Vulkan backend, the plain reference in extended precision
 /// for the CPU path. Throws what the backends throw.
