@@ -42,21 +42,20 @@ void raise(const std::array<Real, 3>& d, int l, const GradientFactors<Real>& f, 
   const Real inverse = Real(1) / Real(l);
   const Real x = d[0] * inverse, y = d[1] * inverse, z = d[2] * inverse;
   ComplexOf<Real> below = l >= 2 ? ComplexOf<Real>{-row[1].re, row[1].im} : ComplexOf<Real>{};
-  for (int m = 0; m <= l; ++m) {
-    const std::size_t i = std::size_t(m);
-    const ComplexOf<Real> same = m <= l - 1 ? row[i] : ComplexOf<Real>{};
-    const ComplexOf<Real> above = m + 1 <= l - 1 ? row[i + 1] : ComplexOf<Real>{};
-    ComplexOf<Real> out;
-    out.re = f.same[i] * z * same.re + f.above[i] * (x * above.re + y * above.im) +
-             f.below[i] * (x * below.re - y * below.im);
-    out.im = f.same[i] * z * same.im + f.above[i] * (x * above.im - y * above.re) +
-             f.below[i] * (x * below.im + y * below.re);
+  ComplexOf<Real> same = row[0];
+  row[std::size_t(l)] = {}; // degree l-1 ends one order earlier, and the next but one is zero as well
+  for (std::size_t m = 0; m <= std::size_t(l); ++m) {
+    const ComplexOf<Real> above = m < std::size_t(l) ? row[m + 1] : ComplexOf<Real>{};
+    const Real sz = f.same[m] * z, fa = f.above[m], fb = f.below[m];
+    Real re = sz * same.re + fa * (x * above.re + y * above.im) + fb * (x * below.re - y * below.im);
+    Real im = sz * same.im + fa * (x * above.im - y * above.re) + fb * (x * below.im + y * below.re);
     if (extra) {
-      out.re += (*extra)[i].re;
-      out.im += (*extra)[i].im;
+      re += (*extra)[m].re;
+      im += (*extra)[m].im;
     }
+    row[m] = {re, im};
     below = same;
-    row[i] = out;
+    same = above;
   }
 }
 
