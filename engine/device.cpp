@@ -24,7 +24,6 @@ Device::Device(std::shared_ptr<Instance> instance, const PhysicalDevice& physica
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &features;
   check(vkCreateDevice(physical.handle, &info, nullptr, &handle_), "open the device");
-  volkLoadDevice(handle_);
   vkGetDeviceQueue(handle_, std::uint32_t(physical.queue_family), 0, &queue_);
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool.queueFamilyIndex = std::uint32_t(physical.queue_family);

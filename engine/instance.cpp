@@ -123,9 +123,11 @@ std::shared_ptr<Instance> Instance::create(bool validation) {
                 "software one) or check VK_DRIVER_FILES, or use --device cpu");
   check(result, validation ? "create an instance with the validation layer (package vulkan-validationlayers)"
                            : "create an instance");
-  volkLoadInstanceOnly(instance->handle_);
+  // The loader's entry points serve every instance and device; only extensions differ between instances.
+  volkLoadInstance(instance->handle_);
   if (validation) {
     messenger.pNext = nullptr;
+    instance->destroy_messenger_ = vkDestroyDebugUtilsMessengerEXT;
     check(vkCreateDebugUtilsMessengerEXT(instance->handle_, &messenger, nullptr, &instance->messenger_),
           "listen to the validation layer");
   }
@@ -133,7 +135,7 @@ std::shared_ptr<Instance> Instance::create(bool validation) {
 }
 
 Instance::~Instance() {
-  if (messenger_) vkDestroyDebugUtilsMessengerEXT(handle_, messenger_, nullptr);
+  if (messenger_) destroy_messenger_(handle_, messenger_, nullptr);
   if (handle_) vkDestroyInstance(handle_, nullptr);
 }
 

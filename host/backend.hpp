@@ -98,7 +98,7 @@ struct GpuOptions {
   std::string device = "auto";  ///< "auto", an index of list_gpus(), or a part of a device's name
   bool validation = false;      ///< core and synchronisation validation; messages are counted
   // The layout of the kernels; 0 and false leave the choice to the kind of device (shaders/moments.comp).
-  std::uint32_t levels = 0;     ///< degrees a sweep advances
+  std::uint32_t levels = 0;     ///< degrees a sweep advances; a power of two, 2 to 16
   std::uint32_t workgroups = 0; ///< partial sums; a power of two, at most 64
   bool rows_in_buffer = false;  ///< recursion rows in device memory
   std::uint64_t state_budget = std::uint64_t(512) << 20; ///< bytes of recursion rows kept on the device at once

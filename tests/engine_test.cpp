@@ -47,7 +47,8 @@ struct Caught {
   bool says(const std::string& words) const { return text.find(words) != std::string::npos; }
 };
 
-template <class Work> Caught caught(const Work& work) {
+template <class Work>
+Caught caught(const Work& work) {
   try {
     work();
   } catch (const engine::Error& error) {
@@ -63,7 +64,7 @@ std::vector<std::byte> random_bytes(std::size_t count) {
   return bytes;
 }
 
-/// Whole and partial writes and reads, and clearing.
+/// Whole and partial writes and reads, and clearing. Brackets keep Catch from writing megabytes out.
 void check_round_trip(Device& device, std::size_t size) {
   Buffer buffer(device, size, "a test");
   CHECK(buffer.size() >= size);
@@ -71,21 +72,21 @@ void check_round_trip(Device& device, std::size_t size) {
   std::vector<std::byte> expected = random_bytes(size), found(size);
   buffer.write(expected);
   buffer.read(found);
-  CHECK(found == expected);
+  CHECK((found == expected));
   for (const std::size_t offset : {std::size_t(0), std::size_t(4), size / 3 / 4 * 4, size - 8}) {
     const auto part = random_bytes(std::min<std::size_t>(size - offset, 4000));
     buffer.write(part, offset);
     std::copy(part.begin(), part.end(), expected.begin() + std::ptrdiff_t(offset));
     std::vector<std::byte> back(part.size());
     buffer.read(back, offset);
-    CHECK(back == part);
+    CHECK((back == part));
   }
   buffer.write({});
   buffer.read(found);
-  CHECK(found == expected);
+  CHECK((found == expected));
   buffer.clear();
   buffer.read(found);
-  CHECK(found == std::vector<std::byte>(size));
+  CHECK((found == std::vector<std::byte>(size)));
 }
 
 } // namespace
@@ -104,7 +105,8 @@ TEST_CASE("a loop runs as often as the iteration budget asks for", "[engine]") {
 }
 
 TEST_CASE("a device is chosen by index, by a part of its name, or as the first that can compute", "[engine]") {
-  const std::vector<PhysicalDevice> devices = {made_up("Small Card", false), made_up("Big Card 9000"), made_up("llvmpipe")};
+  const std::vector<PhysicalDevice> devices = {made_up("Small Card", false), made_up("Big Card 9000"),
+                                               made_up("llvmpipe")};
   CHECK(&choose_device(devices, "auto") == &devices[1]);
   CHECK(&choose_device(devices, "1") == &devices[1]);
   CHECK(&choose_device(devices, "2") == &devices[2]);
@@ -178,7 +180,8 @@ TEST_CASE("a buffer beyond the largest allocation is refused before it is tried"
   {
     Device device(instance, physical);
     const Caught error = caught([&] { Buffer(device, device.physical().largest_allocation + 1, "too much"); });
-    CHECK((error.thrown && error.failure == Failure::out_of_range && error.says("too much") && error.says(device.name())));
+    CHECK((error.thrown && error.failure == Failure::out_of_range && error.says("too much") &&
+           error.says(device.name())));
   }
   physical.largest_allocation = 1 << 20;
   {
@@ -199,12 +202,16 @@ TEST_CASE("wrong arguments to a kernel are errors, not undefined behaviour", "[e
   const std::vector<std::uint32_t> last = {1};
   MomentsShape wrong = shape;
   wrong.lanes = shape.lanes * 2;
-  CHECK(caught([&] { engine::moments(device, wrong, {1, 1, 0, pairs, last}, sums, [](double) { return true; }); }).failure ==
-        Failure::out_of_range);
-  const Caught stopped =
-      caught([&] { engine::moments(device, shape, {1, 1, 0, pairs, last}, sums, [](double) { return false; }); });
+  CHECK(caught([&] {
+          engine::moments(device, wrong, {1, 1, 0, pairs, last}, sums, [](double) { return true; });
+        }).failure == Failure::out_of_range);
+  const Caught stopped = caught([&] {
+    engine::moments(device, shape, {1, 1, 0, pairs, last}, sums, [](double) { return false; });
+  });
   CHECK((stopped.thrown && stopped.failure == Failure::stopped));
-  CHECK_FALSE(caught([&] { engine::moments(device, shape, {1, 1, 0, pairs, last}, sums, [](double) { return true; }); }).thrown);
+  CHECK_FALSE(caught([&] {
+                engine::moments(device, shape, {1, 1, 0, pairs, last}, sums, [](double) { return true; });
+              }).thrown);
   CHECK(gpu->validation_messages().empty());
 }
 

@@ -58,7 +58,8 @@ TEST_CASE("the benchmark cow has the moments that rational arithmetic gives", "[
     const double xx_minus_yy = q(2, 2).real() * square * std::sqrt(32 * std::acos(-1) / 15) * 3;
     const double xy = q(2, 2).imag() * square * std::sqrt(32 * std::acos(-1) / 15) * 1.5;
     check_at_most(std::abs(zz / -2.56882502993958448e-3 - 1), 2.2e-15, "Q_zz");
-    check_at_most(std::abs(xx_minus_yy / (4.18334384358552252e-3 + 1.61451881364593804e-3) - 1), 2.2e-15, "Q_xx - Q_yy");
+    check_at_most(std::abs(xx_minus_yy / (4.18334384358552252e-3 + 1.61451881364593804e-3) - 1), 2.2e-15,
+                  "Q_xx - Q_yy");
     check_at_most(std::abs(xy / 8.5115751586127807e-4 - 1), 2.2e-15, "Q_xy");
   });
 }

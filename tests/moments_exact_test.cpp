@@ -74,8 +74,8 @@ private:
   // det(A, B, C) i! j! k! / (i+j+k+3)!.
   void add_tetrahedron(const std::array<std::array<std::int64_t, 3>, 3>& x) {
     const auto& [p, q, r] = x;
-    const std::int64_t det = p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0]) +
-                             p[2] * (q[0] * r[1] - q[1] * r[0]);
+    const std::int64_t det =
+        p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0]) + p[2] * (q[0] * r[1] - q[1] * r[0]);
     Form xa(0);
     xa.at(0, 0) = 1;
     for (int a = 0; a <= exact_degree; ++a) {
@@ -86,7 +86,8 @@ private:
           Integer sum = 0;
           for (int i = 0; i <= xyz.n; ++i)
             for (int j = 0; i + j <= xyz.n; ++j)
-              if (xyz.at(i, j) != 0) sum += Integer(xyz.at(i, j)) * factorial(i) * factorial(j) * factorial(xyz.n - i - j);
+              if (xyz.at(i, j) != 0)
+                sum += Integer(xyz.at(i, j)) * factorial(i) * factorial(j) * factorial(xyz.n - i - j);
           sum_[index(a, b, c)] += det * sum;
           if (a + b + c < exact_degree) xyz = times(xyz, r);
         }
@@ -112,13 +113,13 @@ std::complex<long double> exact_moment(const Monomials& monomial, int l, int m) 
     for (int i = 0; i <= m; ++i)     // (x+iy)^m: x^(m-i) (iy)^i
       for (int j = 0; j <= k; ++j) { // (x^2+y^2)^k: x^(2k-2j) y^(2j)
         const int sign = (m + k + i / 2) % 2 == 0 ? 1 : -1;
-        sum[std::size_t(i % 2)] += (multinomial << c) * sign * choose(m, i) * choose(k, j) *
-                                   monomial(m - i + 2 * (k - j), i + 2 * j, c);
+        sum[std::size_t(i % 2)] +=
+            (multinomial << c) * sign * choose(m, i) * choose(k, j) * monomial(m - i + 2 * (k - j), i + 2 * j, c);
       }
   }
   using Float = mp::cpp_bin_float_50;
-  const Float norm = sqrt(Float((2 * l + 1) * f(l + m) * f(l - m)) / (4 * acos(Float(-1)))) /
-                     Float(f(l) * f(l + 3) << l);
+  const Float norm =
+      sqrt(Float((2 * l + 1) * f(l + m) * f(l - m)) / (4 * acos(Float(-1)))) / Float(f(l) * f(l + 3) << l);
   return {static_cast<long double>(Float(norm * Float(sum[0]))), static_cast<long double>(Float(norm * Float(sum[1])))};
 }
 
@@ -141,9 +142,7 @@ void check_exact(Paths& paths, const RawMesh& mesh, const std::array<std::int64_
     return double(largest / mass);
   };
   const auto reference = reference::moments<long double>(problem);
-  check_at_most(worst([&](std::size_t i) {
-                  return std::complex<long double>(reference[2 * i], reference[2 * i + 1]);
-                }),
+  check_at_most(worst([&](std::size_t i) { return std::complex<long double>(reference[2 * i], reference[2 * i + 1]); }),
                 figure / 1000, "the reference");
   paths.each([&](Backend& backend) {
     const Coefficients result = moments(backend, problem);
@@ -173,7 +172,9 @@ std::vector<std::pair<double, double>> gauss(int n) {
 std::vector<long double> by_quadrature(const MomentProblem& problem) {
   std::vector<long double> sums(2 * Coefficients::count(problem.lmax), 0.0L);
   const auto rule = gauss(problem.lmax / 2 + 2);
-  const auto corner = [&](std::uint32_t v) { return Vec3((problem.vertices[v] - problem.origin) / problem.reference_radius); };
+  const auto corner = [&](std::uint32_t v) {
+    return Vec3((problem.vertices[v] - problem.origin) / problem.reference_radius);
+  };
   for (const Face& face : problem.faces) {
     const Vec3 a = corner(face[0]), b = corner(face[1]), c = corner(face[2]);
     const double det = a.dot(b.cross(c));
@@ -213,7 +214,8 @@ TEST_CASE("moments of tetrahedra agree with rational arithmetic to degree 16", "
 TEST_CASE("moments of random polyhedra agree with rational arithmetic to degree 16", "[moments][exact]") {
   Paths paths;
   std::mt19937 random(5);
-  for (const int points : {4, 5, 7, 9, 13, 20}) check_exact(paths, convex_polyhedron(random, points, 6), {1, 0, -1}, 4e-16);
+  for (const int points : {4, 5, 7, 9, 13, 20})
+    check_exact(paths, convex_polyhedron(random, points, 6), {1, 0, -1}, 4e-16);
 }
 
 TEST_CASE("moments of odd bodies agree with quadrature to degree 24", "[moments][exact]") {
@@ -262,7 +264,8 @@ TEST_CASE("a tessellated ellipsoid converges to the closed form with order 2", "
   });
 }
 
-TEST_CASE("a tessellated ball has the mass of a ball and no other moment that its symmetry forbids", "[moments][exact]") {
+TEST_CASE("a tessellated ball has the mass of a ball and no other moment that its symmetry forbids",
+          "[moments][exact]") {
   Paths paths;
   const RawMesh mesh = icosphere(3);
   const MomentProblem problem = moment_problem(mesh, 12);
@@ -270,7 +273,8 @@ TEST_CASE("a tessellated ball has the mass of a ball and no other moment that it
     INFO(backend.facts().name);
     const Coefficients q = moments(backend, problem);
     // The icosahedron's group has invariants of degrees 0, 6, 10, 12 up to here.
-    for (const int l : {1, 2, 3, 4, 5, 7, 8, 9, 11}) check_at_most(degree_norm(q, l), 4e-16, fmt::format("degree {}", l));
+    for (const int l : {1, 2, 3, 4, 5, 7, 8, 9, 11})
+      check_at_most(degree_norm(q, l), 4e-16, fmt::format("degree {}", l));
     CHECK(degree_norm(q, 6) >= 1e-6);
   });
 }

@@ -82,9 +82,7 @@ TEST_CASE("density multiplies all moments", "[moments][laws]") {
   const MomentProblem one = moment_problem(mesh, 40);
   MomentProblem eight = one;
   eight.density = 8;
-  paths.each([&](Backend& backend) {
-    CHECK(same_bits(turned(moments(backend, one), 8, 0), moments(backend, eight)));
-  });
+  paths.each([&](Backend& backend) { CHECK(same_bits(turned(moments(backend, one), 8, 0), moments(backend, eight))); });
 }
 
 TEST_CASE("turning a body about z multiplies order m by exp(i m angle)", "[moments][laws]") {
@@ -96,7 +94,8 @@ TEST_CASE("turning a body about z multiplies order m by exp(i m angle)", "[momen
       MomentProblem turned_problem = problem;
       turned_problem.vertices = after.vertices;
       paths.each([&](Backend& backend) {
-        check_close(moments(backend, turned_problem), turned(moments(backend, problem), 1, angle), problem, depth.figure);
+        check_close(moments(backend, turned_problem), turned(moments(backend, problem), 1, angle), problem,
+                    depth.figure);
       });
     }
   });

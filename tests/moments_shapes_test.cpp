@@ -17,7 +17,8 @@ constexpr double figure = 7e-14; // degrees whose norm is far below their bound
 
 /// 150 groups of 8 pairs: more than two chunks of 64.
 const RawMesh& body() {
-  static const RawMesh mesh = rotated(torus(40, 30), Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix());
+  static const RawMesh mesh =
+      rotated(torus(40, 30), Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix());
   return mesh;
 }
 

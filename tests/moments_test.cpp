@@ -125,7 +125,8 @@ TEST_CASE("faces without area change nothing", "[moments][paths]") {
   mesh.faces.push_back({2, 2, 2});
   mesh.faces.insert(mesh.faces.begin(), {{3, 1, 3}, {4, 5, 4}});
   const MomentProblem problem = moment_problem(before, 40), odd = moment_problem(mesh, 40);
-  paths.each([&](Backend& backend) { check_close(moments(backend, odd), moments(backend, problem), problem, 1.5e-15); });
+  paths.each(
+      [&](Backend& backend) { check_close(moments(backend, odd), moments(backend, problem), problem, 1.5e-15); });
 }
 
 TEST_CASE("without a cut-off nothing but underflow is left out", "[moments][cut-off]") {

@@ -147,10 +147,10 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
     throw Error(Failure::out_of_range, 0,
                 fmt::format("a group of {} pairs does not fit the subgroups of {} lanes of the device {}", shape.lanes,
                             device.physical().subgroup_size, device.name()));
-  if (!std::has_single_bit(shape.levels) || shape.levels > 16 || !std::has_single_bit(shape.workgroups) ||
+  if (!std::has_single_bit(shape.levels) || shape.levels < 2 || shape.levels > 16 || !std::has_single_bit(shape.workgroups) ||
       shape.workgroups > chunk_granularity)
     throw Error(Failure::out_of_range, 0,
-                fmt::format("{} levels and {} workgroups: both must be powers of two, at most 16 and {}", shape.levels,
+                fmt::format("{} levels and {} workgroups: both must be powers of two, 2 to 16 and 1 to {}", shape.levels,
                             shape.workgroups, chunk_granularity));
   const Layout layout(shape, device.largest_range(), input.lmax);
   const Kernel& kernel = device.kernel({"moments", shaders::moments, MOMENTS_BINDINGS, sizeof(shaders::MomentsPush),

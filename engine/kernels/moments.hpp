@@ -13,7 +13,7 @@ namespace cowgpu::engine {
 /// How the work is laid out on a device. Zeros are filled in by the kind of device.
 struct MomentsShape {
   std::uint32_t lanes = 0;      ///< pairs a group: the subgroup's size
-  std::uint32_t levels = 0;     ///< degrees a sweep advances; a power of two, at most 16
+  std::uint32_t levels = 0;     ///< degrees a sweep advances; a power of two, 2 to 16
   std::uint32_t workgroups = 0; ///< workgroups, each with a partial sum; a power of two, at most 64
   bool rows_in_buffer = false;  ///< rows in device memory instead of private memory
   std::uint64_t state_budget = std::uint64_t(512) << 20; ///< bytes of rows in device memory

@@ -27,7 +27,8 @@ std::unique_ptr<Backend> gpu_backend(GpuOptions options) {
   try {
     return make_gpu_backend(options);
   } catch (const Error& error) {
-    if (error.fault() != Fault::no_loader && error.fault() != Fault::no_device && error.fault() != Fault::no_fp64) throw;
+    if (error.fault() != Fault::no_loader && error.fault() != Fault::no_device && error.fault() != Fault::no_fp64)
+      throw;
     return {};
   }
 }
@@ -67,8 +68,8 @@ void compare_path(Backend& backend, const MomentProblem& problem, std::span<cons
   CHECK(result.density == problem.density);
   const DegreeErrors errors = cowgpu::compare(result, reference, plan::degree_bound(problem));
   check_at_most(errors.worst, figure,
-                fmt::format("{}, {} faces, lmax {}, degree {}", backend.facts().type, problem.faces.size(), problem.lmax,
-                            errors.worst_degree));
+                fmt::format("{}, {} faces, lmax {}, degree {}", backend.facts().type, problem.faces.size(),
+                            problem.lmax, errors.worst_degree));
 }
 
 void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure) {

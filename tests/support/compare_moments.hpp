@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/backend.hpp"
+#include "host/mesh/raw_mesh.hpp"
 #include "host/spectrum/compare.hpp"
 
 #include <functional>

@@ -69,8 +69,18 @@ std::vector<Face> convex_hull(const std::vector<Point>& p) {
 } // namespace
 
 RawMesh box(const Vec3& sides, const Vec3& corner) {
-  RawMesh mesh = made({}, {{0, 3, 2}, {0, 2, 1}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
-                           {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}});
+  RawMesh mesh = made({}, {{0, 3, 2},
+                           {0, 2, 1},
+                           {4, 5, 6},
+                           {4, 6, 7},
+                           {0, 1, 5},
+                           {0, 5, 4},
+                           {1, 2, 6},
+                           {1, 6, 5},
+                           {2, 3, 7},
+                           {2, 7, 6},
+                           {3, 0, 4},
+                           {3, 4, 7}});
   for (const int z : {0, 1})
     for (const auto& [x, y] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)})
       mesh.vertices.push_back(corner + sides.cwiseProduct(Vec3(x, y, z)));
@@ -88,7 +98,8 @@ RawMesh convex_polyhedron(std::mt19937& random, int points, int largest) {
     for (Point& x : p)
       for (std::int64_t& coordinate : x) coordinate = std::int64_t(random() % unsigned(2 * largest + 1)) - largest;
     const Point& o = p[0];
-    const Point u = {p[1][0] - o[0], p[1][1] - o[1], p[1][2] - o[2]}, v = {p[2][0] - o[0], p[2][1] - o[1], p[2][2] - o[2]};
+    const Point u = {p[1][0] - o[0], p[1][1] - o[1], p[1][2] - o[2]},
+                v = {p[2][0] - o[0], p[2][1] - o[1], p[2][2] - o[2]};
     const bool collinear = u[0] * v[1] == u[1] * v[0] && u[1] * v[2] == u[2] * v[1] && u[2] * v[0] == u[0] * v[2];
     RawMesh mesh = made({}, collinear ? std::vector<Face>{} : convex_hull(p));
     if (mesh.faces.empty()) continue;
@@ -99,11 +110,21 @@ RawMesh convex_polyhedron(std::mt19937& random, int points, int largest) {
 
 RawMesh icosphere(int level, double radius) {
   const double g = std::numbers::phi;
-  RawMesh mesh = made({{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                       {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}},
-                      {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                       {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                       {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}});
+  RawMesh mesh = made({{-1, g, 0},
+                       {1, g, 0},
+                       {-1, -g, 0},
+                       {1, -g, 0},
+                       {0, -1, g},
+                       {0, 1, g},
+                       {0, -1, -g},
+                       {0, 1, -g},
+                       {g, 0, -1},
+                       {g, 0, 1},
+                       {-g, 0, -1},
+                       {-g, 0, 1}},
+                      {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                       {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                       {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}});
   for (int i = 0; i < level; ++i) mesh = split_midpoint(mesh);
   for (Vec3& v : mesh.vertices) v *= radius / v.norm();
   return mesh;
