@@ -149,6 +149,22 @@ TEST_CASE("every device of this machine can be opened by its index and by its na
   CHECK((error.thrown && error.failure == Failure::no_device && error.says(list[0].name)));
 }
 
+TEST_CASE("devices with and without validation live side by side", "[engine]") {
+  auto validated = open_gpu();
+  if (!validated) return test::skip_without_gpu();
+  auto plain = std::make_unique<Gpu>("auto", false);
+  check_round_trip(validated->device(), 1000);
+  check_round_trip(plain->device(), 1000);
+  CHECK_FALSE(engine::list_gpus().empty());
+  CHECK(loop_iterations(validated->device(), 100) == 100);
+  plain.reset();
+  CHECK(loop_iterations(validated->device(), 100) == 100);
+  CHECK(validated->validation_messages().empty());
+  plain = std::make_unique<Gpu>("auto", false);
+  validated.reset();
+  CHECK(loop_iterations(plain->device(), 100) == 100);
+}
+
 TEST_CASE("buffers give back what was written", "[engine]") {
   const auto gpu = open_gpu();
   if (!gpu) return test::skip_without_gpu();

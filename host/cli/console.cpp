@@ -53,8 +53,8 @@ void ConsoleMonitor::progress(const char* what, double fraction) {
   if (style_ == ProgressStyle::none) return;
   const auto now = Clock::now();
   if (what_ != what) {
+    if (!what_.empty()) start_ = now; // the first phase began with the monitor
     what_ = what;
-    start_ = now;
   }
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   if (elapsed < 1 || now - last_ < std::chrono::milliseconds(100)) return;

@@ -42,8 +42,8 @@ void run(const Options& options, Common& common) {
   for (const Check& check : checks) {
     write_stdout(fmt::format("  {:<{}}  {:>8.1e}  {:>6}  {:>8.1e}  {}\n", check.what, width, check.value,
                              check.degree < 0 ? "" : std::to_string(check.degree), check.bound,
-                             check.passed() ? "passed" : "FAILED"));
-    failed += !check.passed();
+                             check.passed ? "passed" : "FAILED"));
+    failed += !check.passed;
   }
   if (failed) {
     flush_stdout();

@@ -28,6 +28,12 @@ std::size_t partials(const PartialLayout& layout) {
   return std::clamp<std::size_t>(budget / (8 * layout.size() + 1), 8, 64);
 }
 
+// How many of the partial sums exist at once: all of them while they are small, else one a thread.
+std::size_t round_size(const PartialLayout& layout, unsigned threads, std::size_t hands) {
+  constexpr std::size_t budget = std::size_t(64) << 20;
+  return std::min(hands, std::max<std::size_t>(threads, budget / (8 * layout.size() + 1)));
+}
+
 // Deals the groups out, the longest first, to the partial sum with the least work so far.
 std::vector<std::vector<std::uint32_t>> deal(const plan::Moments& plan, std::size_t hands) {
   std::vector<std::uint32_t> order(plan.groups());
@@ -75,32 +81,38 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
 
   const PartialLayout layout(plan.lmax);
   const auto hand = deal(plan, partials(layout));
-  // Hands are played in rounds, one to a thread, so that no more partial sums exist than threads.
-  const std::size_t seats = std::min<std::size_t>(threads, hand.size());
+  // Where partial sums are large, hands are played in rounds, one to a thread, so that few of them exist at once.
+  const std::size_t seats = round_size(layout, threads, hand.size());
   std::vector<Partial> partial;
-  std::vector<MomentsWorkspace> workspaces;
   for (std::size_t seat = 0; seat < seats; ++seat) {
     partial.push_back(hwy::AllocateAligned<double>(std::max<std::size_t>(layout.size(), 1))); // lmax 0 has none
     if (!partial.back()) throw std::bad_alloc();
-    workspaces.emplace_back(plan.lmax);
   }
+  std::vector<MomentsWorkspace> workspaces;
+  for (unsigned t = 0; t < threads; ++t) workspaces.emplace_back(plan.lmax);
   std::vector<double> sums(2 * Coefficients::count(plan.lmax), 0.0);
   sums[0] = std::ldexp(plan.sum_of_dets, plan.start_exponent);
   double done = 0;
   std::mutex done_mutex;
   for (std::size_t first = 0; first < hand.size(); first += seats) {
     const std::size_t round = std::min(seats, hand.size() - first);
-    parallel_for(threads, round, [&](std::size_t seat, unsigned) {
+    parallel_for(threads, round, [&](std::size_t seat, unsigned thread) {
       const FlushDenormals flush;
       if (first == 0) std::fill_n(partial[seat].get(), layout.size(), 0.0);
+      double work = 0;
       for (const std::uint32_t group : hand[first + seat]) {
         check_stop(monitor);
-        accumulate_group(plan, group, layout, workspaces[seat], partial[seat].get());
+        accumulate_group(plan, group, layout, workspaces[thread], partial[seat].get());
         const double l = plan.last_degree[group];
+        work += 0.5 * plan.lanes * (l + 1) * (l + 2);
+        if (work < plan.elements / 4096) continue;
         const std::lock_guard lock(done_mutex);
-        done += 0.5 * plan.lanes * (l + 1) * (l + 2);
+        done += work;
+        work = 0;
         monitor.progress("moments", std::min(1.0, done / plan.elements));
       }
+      const std::lock_guard lock(done_mutex);
+      done += work;
     });
     gather(plan, layout, {partial.data(), round}, threads, sums);
   }
@@ -118,9 +130,8 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
 
 std::uint64_t moments_bytes(const MomentProblem& problem, unsigned threads) {
   const PartialLayout layout(problem.lmax);
-  const std::uint64_t seats = std::min<std::uint64_t>(threads, partials(layout));
-  return plan::bytes(problem) + seats * (8 * layout.size() + 640 * (std::uint64_t(problem.lmax) + 48)) +
-         32 * Coefficients::count(problem.lmax);
+  return plan::bytes(problem) + round_size(layout, threads, partials(layout)) * 8 * layout.size() +
+         threads * 640 * (std::uint64_t(problem.lmax) + 48) + 32 * Coefficients::count(problem.lmax);
 }
 
 } // namespace cowgpu::cpu

@@ -10,7 +10,7 @@ namespace cowgpu::cpu {
 Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& monitor, RunReport* report);
 
 /// Bound of the bytes moments() allocates, its result included: 304 a face and 8 a vertex for the plan, 32 a coefficient,
-/// and for each thread (64 at most) a partial sum of 8 (lmax^2 + 33 lmax) and rows of 640 (lmax + 48).
+/// 640 (lmax + 48) a thread, and partial sums of 8 (lmax^2 + 33 lmax) each: one a thread, or up to 64 MiB of them.
 std::uint64_t moments_bytes(const MomentProblem& problem, unsigned threads);
 
 } // namespace cowgpu::cpu

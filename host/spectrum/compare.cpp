@@ -25,6 +25,8 @@ DegreeErrors compare_with(const Coefficients& a, std::span<const double> bound, 
     if (l == 1 || scale < 1e-3 * limit) scale = limit;
     const double error = difference == 0 ? 0.0 : double(std::sqrt(difference)) / scale;
     errors.relative.push_back(error);
+    const double weighed = error / std::max(1.0, 0.01 * limit / scale);
+    if (difference != 0 && !(weighed <= errors.weighed)) errors.weighed = weighed;
     if (!(error <= errors.worst)) {
       errors.worst = error;
       errors.worst_degree = l;

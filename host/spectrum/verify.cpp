@@ -43,7 +43,10 @@ int Accuracy::worst_degree() const {
   return degree;
 }
 
-bool Accuracy::passed() const { return worst() <= bound; }
+bool Accuracy::passed() const {
+  return std::all_of(agreements.begin(), agreements.end(),
+                     [&](const Agreement& a) { return a.errors.weighed <= bound; });
+}
 
 MomentProblem mass_problem(const Body& body, int lmax, double cut_off) {
   MomentProblem problem;

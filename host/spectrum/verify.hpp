@@ -24,12 +24,12 @@ struct Accuracy {
   Verify how = Verify::none;
   std::uint64_t triangles = 0;
   std::uint64_t seed = 0; ///< of the sample
-  double bound = 0;       ///< the paths must agree to this, expected_error()
+  double bound = 0;       ///< what the paths must agree to, expected_error()
   std::vector<Agreement> agreements;
 
   double worst() const;
   int worst_degree() const;
-  bool passed() const; ///< every agreement within the bound; NaN fails
+  bool passed() const; ///< DegreeErrors::weighed of every agreement within the bound; NaN fails
 };
 
 /// The problem of a body's mass moments. It refers to the body.

@@ -15,8 +15,7 @@ namespace cowgpu::test {
 /// A problem about `origin` with the body's own radius there. `mesh` must outlive it.
 MomentProblem moment_problem(const RawMesh& mesh, int lmax, const Vec3& origin = Vec3::Zero());
 
-/// The Vulkan path with validation on, or null where there is no device. Made anew by each call: two instances at once
-/// would share volk's function pointers, so a test lets one go before it asks for the next.
+/// The Vulkan path with validation on, or null where there is no device. Made anew by each call.
 std::unique_ptr<Backend> gpu_backend(GpuOptions options = {});
 /// Makes ctest list the test as skipped; the test returns then.
 void skip_without_gpu();
