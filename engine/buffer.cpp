@@ -35,8 +35,7 @@ void Buffer::allocate(Place place) {
                             device_.name(), action, double(device_.physical().largest_allocation) / (1 << 20)));
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = size_;
-  info.usage =
-      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   device_.check(vkCreateBuffer(device_.handle(), &info, nullptr, &handle_), action);
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device_.handle(), handle_, &needs);
@@ -75,7 +74,9 @@ void Buffer::release() {
   if (memory_) vkFreeMemory(device_.handle(), memory_, nullptr);
 }
 
-Buffer::~Buffer() { release(); }
+Buffer::~Buffer() {
+  release();
+}
 
 template <class Copy>
 void Buffer::staged(std::uint64_t offset, std::uint64_t bytes, bool to_device, const Copy& copy) {
@@ -100,9 +101,8 @@ void Buffer::write(std::span<const std::byte> data, std::uint64_t offset) {
     std::memcpy(mapped_ + offset, data.data(), data.size());
     return;
   }
-  staged(offset, data.size(), true, [&](std::byte* to, std::uint64_t at, std::uint64_t part) {
-    std::memcpy(to, data.data() + at, part);
-  });
+  staged(offset, data.size(), true,
+         [&](std::byte* to, std::uint64_t at, std::uint64_t part) { std::memcpy(to, data.data() + at, part); });
 }
 
 void Buffer::read(std::span<std::byte> data, std::uint64_t offset) {

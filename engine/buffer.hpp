@@ -33,7 +33,8 @@ private:
   Buffer(Device& device, std::uint64_t bytes, std::string what, Place place);
   void allocate(Place place);
   void release();
-  template <class Copy> void staged(std::uint64_t offset, std::uint64_t bytes, bool to_device, const Copy& copy);
+  template <class Copy>
+  void staged(std::uint64_t offset, std::uint64_t bytes, bool to_device, const Copy& copy);
 
   Device& device_;
   std::uint64_t size_;
@@ -44,6 +45,9 @@ private:
 };
 
 /// Elements as bytes, for Buffer::write and read.
-template <class T> std::span<const std::byte> bytes_of(std::span<const T> data) { return std::as_bytes(data); }
+template <class T>
+std::span<const std::byte> bytes_of(std::span<const T> data) {
+  return std::as_bytes(data);
+}
 
 } // namespace cowgpu::engine

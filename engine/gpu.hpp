@@ -16,15 +16,15 @@ class Device;
 /// What a device is and can do.
 struct GpuFacts {
   std::string name;
-  std::string type;   ///< "discrete", "integrated", "virtual", "software" or "other"
+  std::string type; ///< "discrete", "integrated", "virtual", "software" or "other"
   std::string driver;
-  std::string api;    ///< "Vulkan 1.3.230"
+  std::string api;     ///< "Vulkan 1.3.230"
   bool usable = false; ///< double precision, subgroup shuffles and a compute queue
   bool fp64 = false;
   std::uint32_t subgroup_size = 1;
-  std::uint32_t shared_memory = 0;    ///< bytes
-  std::uint64_t memory = 0;           ///< bytes of the largest device-local heap
-  std::uint64_t largest_range = 0;    ///< bytes one binding may span
+  std::uint32_t shared_memory = 0; ///< bytes
+  std::uint64_t memory = 0;        ///< bytes of the largest device-local heap
+  std::uint64_t largest_range = 0; ///< bytes one binding may span
   std::uint64_t largest_allocation = 0;
 };
 

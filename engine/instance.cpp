@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cctype>
+#include <charconv>
 
 namespace cowgpu::engine {
 namespace {
@@ -154,19 +154,21 @@ std::vector<PhysicalDevice> Instance::devices() const {
 
 const PhysicalDevice& choose_device(const std::vector<PhysicalDevice>& devices, const std::string& wanted) {
   if (devices.empty())
-    throw Error(Failure::no_device, 0,
-                "there is no Vulkan device on this machine; install a driver (mesa-vulkan-drivers has a software one) or "
-                "use --device cpu");
+    throw Error(
+        Failure::no_device, 0,
+        "there is no Vulkan device on this machine; install a driver (mesa-vulkan-drivers has a software one) or "
+        "use --device cpu");
   std::string there;
   for (std::size_t i = 0; i < devices.size(); ++i)
     there += fmt::format("{}{}: {}{}", i ? ", " : "", i, devices[i].properties.deviceName,
                          devices[i].usable() ? "" : " (without double precision)");
   const auto ready = [&](const PhysicalDevice& device) -> const PhysicalDevice& {
     if (!device.usable())
-      throw Error(Failure::no_fp64, 0,
-                  fmt::format("the device {} lacks double precision (shaderFloat64), subgroup shuffles or a compute queue, "
-                              "which cowgpu needs; there are: {}; or use --device cpu",
-                              device.properties.deviceName, there));
+      throw Error(
+          Failure::no_fp64, 0,
+          fmt::format("the device {} lacks double precision (shaderFloat64), subgroup shuffles or a compute queue, "
+                      "which cowgpu needs; there are: {}; or use --device cpu",
+                      device.properties.deviceName, there));
     return device;
   };
   if (wanted == "auto") {

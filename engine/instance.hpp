@@ -23,12 +23,12 @@ struct PhysicalDevice {
   VkPhysicalDevice handle = VK_NULL_HANDLE;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
-  std::string driver;               ///< name and version, in words
+  std::string driver; ///< name and version, in words
   bool fp64 = false;
   bool subgroup_arithmetic = false; ///< subgroup shuffles in compute shaders
   std::uint32_t subgroup_size = 1;
   std::uint64_t largest_allocation = 0;
-  int queue_family = -1;            ///< one that computes; -1: none
+  int queue_family = -1; ///< one that computes; -1: none
 
   bool usable() const { return fp64 && subgroup_arithmetic && queue_family >= 0; }
   const char* type_name() const; ///< "discrete", "integrated", "virtual", "software" or "other"

@@ -44,7 +44,9 @@ void Job::release() {
   if (commands_) vkFreeCommandBuffers(device_.handle(), device_.command_pool(), 1, &commands_);
 }
 
-Job::~Job() { release(); }
+Job::~Job() {
+  release();
+}
 
 void Job::begin() {
   if (recording_) return;
@@ -70,11 +72,13 @@ void Job::barrier() {
 void Job::dispatch(const Kernel& kernel, std::span<const BufferRange> ranges, std::span<const std::byte> push,
                    std::uint32_t groups) {
   if (ranges.size() != kernel.bindings() || ranges.size() > most_bindings || push.size() != kernel.push_bytes())
-    throw Error(Failure::out_of_range, 0, fmt::format("the kernel {} was given other arguments than it takes", kernel.name()));
+    throw Error(Failure::out_of_range, 0,
+                fmt::format("the kernel {} was given other arguments than it takes", kernel.name()));
   if (groups == 0) return;
   if (groups > device_.limits().maxComputeWorkGroupCount[0])
-    throw Error(Failure::out_of_range, 0, fmt::format("{} workgroups of {} are more than the device {} takes", groups,
-                                                      kernel.name(), device_.name()));
+    throw Error(
+        Failure::out_of_range, 0,
+        fmt::format("{} workgroups of {} are more than the device {} takes", groups, kernel.name(), device_.name()));
   if (recorded_.size() == capacity) run();
   begin();
 
@@ -138,7 +142,8 @@ void Job::run() {
   VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
   submit.commandBufferCount = 1;
   submit.pCommandBuffers = &commands_;
-  const std::string what = recorded_.empty() ? "copy" : fmt::format("run {} ({} dispatches)", recorded_.back(), recorded_.size());
+  const std::string what =
+      recorded_.empty() ? "copy" : fmt::format("run {} ({} dispatches)", recorded_.back(), recorded_.size());
   device_.check(vkQueueSubmit(device_.queue(), 1, &submit, fence_), what);
   const VkResult result = vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, patience_ns);
   // A hung device cannot be waited for: give it up as lost rather than free what it still uses.
@@ -146,9 +151,8 @@ void Job::run() {
   device_.check(vkResetFences(device_.handle(), 1, &fence_), "reset a fence");
 
   std::vector<std::uint64_t> ticks(2 * recorded_.size());
-  if (!ticks.empty() &&
-      vkGetQueryPoolResults(device_.handle(), queries_, 0, std::uint32_t(ticks.size()), ticks.size() * 8, ticks.data(), 8,
-                            VK_QUERY_RESULT_64_BIT) == VK_SUCCESS)
+  if (!ticks.empty() && vkGetQueryPoolResults(device_.handle(), queries_, 0, std::uint32_t(ticks.size()),
+                                              ticks.size() * 8, ticks.data(), 8, VK_QUERY_RESULT_64_BIT) == VK_SUCCESS)
     for (std::size_t i = 0; i < recorded_.size(); ++i) {
       Profile::Entry& entry = device_.profile().kernels[recorded_[i]];
       ++entry.dispatches;

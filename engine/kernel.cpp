@@ -64,6 +64,8 @@ void Kernel::release() {
   vkDestroyShaderModule(device_.handle(), module_, nullptr);
 }
 
-Kernel::~Kernel() { release(); }
+Kernel::~Kernel() {
+  release();
+}
 
 } // namespace cowgpu::engine

@@ -12,7 +12,7 @@ namespace cowgpu::engine {
 
 /// What a kernel is made of.
 struct KernelInfo {
-  std::string name;                     ///< in errors and in the profile
+  std::string name; ///< in errors and in the profile
   std::span<const std::uint32_t> spirv;
   std::uint32_t bindings = 0;           ///< storage buffers 0 ... bindings-1 of set 0
   std::uint32_t push_bytes = 0;         ///< of push constants; at most 128

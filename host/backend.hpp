@@ -21,29 +21,29 @@ inline constexpr int largest_degree = 4096;
 
 /// Input of the verb `moments`.
 struct MomentProblem {
-  std::span<const Vec3> vertices; ///< mesh coordinates
-  std::span<const Face> faces;    ///< the surface's faces, or any part of them (moments add)
-  Vec3 origin = Vec3::Zero();     ///< mesh coordinates
-  double reference_radius = 1;    ///< R > 0, at least the distance of every vertex used from `origin`
-  double density = 1;             ///< mass per cubed length unit
-  int lmax = 0;                   ///< 0 ... largest_degree
+  std::span<const Vec3> vertices;   ///< mesh coordinates
+  std::span<const Face> faces;      ///< the surface's faces, or any part of them (moments add)
+  Vec3 origin = Vec3::Zero();       ///< mesh coordinates
+  double reference_radius = 1;      ///< R > 0, at least the distance of every vertex used from `origin`
+  double density = 1;               ///< mass per cubed length unit
+  int lmax = 0;                     ///< 0 ... largest_degree
   double cut_off = default_cut_off; ///< allowed error per degree, relative to degree_bound(); 0: leave out only what
                                     ///< would underflow
 };
 
 /// What a device is and can do, in words and plain numbers.
 struct DeviceFacts {
-  std::string name;         ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string type;         ///< "discrete", "integrated", "virtual", "software", "cpu" or "other"
-  std::string driver;       ///< name and version of the driver, or the instruction set
-  std::string api;          ///< "Vulkan 1.3.230", "native"
+  std::string name;   ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string type;   ///< "discrete", "integrated", "virtual", "software", "cpu" or "other"
+  std::string driver; ///< name and version of the driver, or the instruction set
+  std::string api;    ///< "Vulkan 1.3.230", "native"
   bool fp64 = true;
-  bool usable = true;       ///< has all that cowgpu needs
-  std::uint32_t subgroup = 1;      ///< lanes that run in step
-  std::uint64_t memory = 0;        ///< bytes of the largest device-local heap (0: not known)
+  bool usable = true;               ///< has all that cowgpu needs
+  std::uint32_t subgroup = 1;       ///< lanes that run in step
+  std::uint64_t memory = 0;         ///< bytes of the largest device-local heap (0: not known)
   std::uint64_t largest_buffer = 0; ///< bytes one shader binding may span (0: no limit)
-  std::uint32_t shared_memory = 0; ///< bytes of memory shared by a workgroup
-  unsigned threads = 1;            ///< of the CPU path
+  std::uint32_t shared_memory = 0;  ///< bytes of memory shared by a workgroup
+  unsigned threads = 1;             ///< of the CPU path
 };
 
 /// Time one kernel took on a device, summed over its dispatches.
@@ -55,11 +55,11 @@ struct KernelTime {
 
 /// What a verb did, beside its result.
 struct RunReport {
-  double seconds = 0;          ///< wall time of the verb
-  double setup_seconds = 0;    ///< of that: planning, pairing, sorting on the host
-  double elements = 0;         ///< (l, m) entries evaluated, summed over pairs of triangles
-  double full_elements = 0;    ///< the same without the cut-off
-  std::uint64_t pairs = 0;     ///< pairs (and leftover single triangles) of the plan
+  double seconds = 0;              ///< wall time of the verb
+  double setup_seconds = 0;        ///< of that: planning, pairing, sorting on the host
+  double elements = 0;             ///< (l, m) entries evaluated, summed over pairs of triangles
+  double full_elements = 0;        ///< the same without the cut-off
+  std::uint64_t pairs = 0;         ///< pairs (and leftover single triangles) of the plan
   std::vector<KernelTime> kernels; ///< empty on the CPU path
 };
 
@@ -95,14 +95,14 @@ std::unique_ptr<Backend> make_cpu_backend(unsigned threads = 0);
 
 /// Options of the Vulkan path.
 struct GpuOptions {
-  std::string device = "auto";  ///< "auto", an index of list_gpus(), or a part of a device's name
-  bool validation = false;      ///< core and synchronisation validation; messages are counted
+  std::string device = "auto"; ///< "auto", an index of list_gpus(), or a part of a device's name
+  bool validation = false;     ///< core and synchronisation validation; messages are counted
   // The layout of the kernels; 0 and false leave the choice to the kind of device (shaders/moments.comp).
-  std::uint32_t levels = 0;     ///< degrees a sweep advances; a power of two, 2 to 16
-  std::uint32_t workgroups = 0; ///< partial sums; a power of two, at most 64
-  bool rows_in_buffer = false;  ///< recursion rows in device memory
+  std::uint32_t levels = 0;                              ///< degrees a sweep advances; a power of two, 2 to 16
+  std::uint32_t workgroups = 0;                          ///< partial sums; a power of two, at most 64
+  bool rows_in_buffer = false;                           ///< recursion rows in device memory
   std::uint64_t state_budget = std::uint64_t(512) << 20; ///< bytes of recursion rows kept on the device at once
-  std::uint32_t iteration_budget = 60000; ///< loop iterations one invocation may run in a dispatch
+  std::uint32_t iteration_budget = 60000;                ///< loop iterations one invocation may run in a dispatch
 };
 
 /// The Vulkan path. Throws Error(no_loader, no_device, no_fp64, device_failed).

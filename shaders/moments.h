@@ -4,10 +4,10 @@
 #include "shaders/layout.h"
 
 // Specialization constants.
-#define MOMENTS_LEVELS_ID 1          // degrees a sweep advances
-#define MOMENTS_COLUMNS_ID 2         // columns of a row kept in private memory; 1 where rows live in the buffer
-#define MOMENTS_ROWS_IN_BUFFER_ID 3  // rows live in the state buffer (discrete GPUs), not in private memory
-#define MOMENTS_COLUMN_SCALE_ID 4    // s of host/plan/moments.hpp: 1 or 2
+#define MOMENTS_LEVELS_ID 1         // degrees a sweep advances
+#define MOMENTS_COLUMNS_ID 2        // columns of a row kept in private memory; 1 where rows live in the buffer
+#define MOMENTS_ROWS_IN_BUFFER_ID 3 // rows live in the state buffer (discrete GPUs), not in private memory
+#define MOMENTS_COLUMN_SCALE_ID 4   // s of host/plan/moments.hpp: 1 or 2
 
 // Bindings.
 #define MOMENTS_GROUPS 0  // MOMENTS_INPUTS doubles a pair, lanes innermost
@@ -32,19 +32,19 @@ namespace cowgpu::shaders {
 #endif
 
 struct MomentsPush {
-  double start;          // rows start at this power of two
-  uint begin_group;      // this dispatch works on groups begin ... end-1, counted from the bound ranges' start
+  double start;     // rows start at this power of two
+  uint begin_group; // this dispatch works on groups begin ... end-1, counted from the bound ranges' start
   uint end_group;
-  uint first_degree;     // of the slice, 1 or one past the end of the slice before
-  uint last_degree;      // of the slice
-  uint partial_stride;   // doubles between two workgroups' partial sums
-  uint state_columns;    // columns of a row in the state buffer
+  uint first_degree;   // of the slice, 1 or one past the end of the slice before
+  uint last_degree;    // of the slice
+  uint partial_stride; // doubles between two workgroups' partial sums
+  uint state_columns;  // columns of a row in the state buffer
 };
 
 struct MomentsSumPush {
-  uint size;     // doubles to sum
-  uint stride;   // between partial sums
-  uint count;    // partial sums
+  uint size;   // doubles to sum
+  uint stride; // between partial sums
+  uint count;  // partial sums
 };
 
 #ifdef __cplusplus

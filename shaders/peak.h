@@ -13,7 +13,7 @@ namespace cowgpu::shaders {
 struct PeakPush {
   double factor; // below 1, so that the chains stay finite
   double term;
-  uint rounds;   // each does 8 multiply-adds a chain; at most 60000
+  uint rounds; // each does 8 multiply-adds a chain; at most 60000
 };
 #ifdef __cplusplus
 static_assert(sizeof(PeakPush) == 24);

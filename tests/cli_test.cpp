@@ -19,7 +19,9 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
-void write_text(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 std::size_t files_in(const std::string& folder) {
   const auto all = std::filesystem::directory_iterator(folder);
@@ -187,8 +189,8 @@ TEST_CASE("an interrupt ends long work with 130 and leaves the old file", "[cli]
     write_text(folder / "out.json", "old");
     ProgramOptions options;
     options.interrupt_after = 2;
-    const ProgramRun run =
-        run_program({"expand", "builtin:sphere@7", "--lmax", "2000", "--device", device, "-o", folder / "out.json"}, options);
+    const ProgramRun run = run_program(
+        {"expand", "builtin:sphere@7", "--lmax", "2000", "--device", device, "-o", folder / "out.json"}, options);
     INFO(run.err);
     CHECK(run.exit_code == 130);
     CHECK_THAT(run.err, Contains("[interrupted]"));
@@ -236,7 +238,8 @@ TEST_CASE("validate passes on a built-in body and prints a table", "[cli]") {
 
 TEST_CASE("a check out of bounds is exit code 1 and the result is still printed", "[cli]") {
   // A cut-off this coarse misses the reference by far more than rounding.
-  const ProgramRun run = run_program({"validate", "builtin:cow@1", "--lmax", "64", "--cut-off", "1e-4", "--device", "cpu"});
+  const ProgramRun run =
+      run_program({"validate", "builtin:cow@1", "--lmax", "64", "--cut-off", "1e-4", "--device", "cpu"});
   CHECK(run.exit_code == 1);
   CHECK_THAT(run.out, Contains("FAILED"));
   CHECK_THAT(run.err, Contains("[check-failed]"));

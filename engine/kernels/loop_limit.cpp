@@ -7,8 +7,8 @@
 namespace cowgpu::engine {
 
 std::uint32_t loop_iterations(Device& device, std::uint32_t iterations) {
-  const Kernel& kernel = device.kernel(
-                      {"loop_limit", shaders::loop_limit, LOOP_LIMIT_BINDINGS, sizeof(shaders::LoopLimitPush), {8}});
+  const Kernel& kernel =
+      device.kernel({"loop_limit", shaders::loop_limit, LOOP_LIMIT_BINDINGS, sizeof(shaders::LoopLimitPush), {8}});
   Buffer result(device, 8 * 4, "the counts");
   const BufferRange range{&result};
   const shaders::LoopLimitPush push = {iterations};

@@ -46,8 +46,8 @@ public:
       if (slice.last == 0) break; // lmax 0
       slices.push_back(slice);
     }
-    const std::uint64_t group_bytes = std::max<std::uint64_t>(
-        keeps_state() ? state_bytes() : 0, std::uint64_t(8) * MOMENTS_INPUTS * shape.lanes);
+    const std::uint64_t group_bytes =
+        std::max<std::uint64_t>(keeps_state() ? state_bytes() : 0, std::uint64_t(8) * MOMENTS_INPUTS * shape.lanes);
     const std::uint64_t budget = std::min(keeps_state() ? shape.state_budget : largest_range, largest_range);
     chunk = std::max<std::uint64_t>(budget / group_bytes / chunk_granularity, 1) * chunk_granularity;
   }
@@ -99,7 +99,10 @@ std::uint32_t private_columns(const MomentsShape& shape, int lmax) {
   return needed;
 }
 
-template <class T> std::span<const std::byte> push_bytes(const T& push) { return std::as_bytes(std::span(&push, 1)); }
+template <class T>
+std::span<const std::byte> push_bytes(const T& push) {
+  return std::as_bytes(std::span(&push, 1));
+}
 
 // From the total's columns to rows sorted by l, then m.
 void gather(const MomentsShape& shape, const Layout& layout, const Slice& slice, std::span<const double> total,
@@ -147,17 +150,20 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
     throw Error(Failure::out_of_range, 0,
                 fmt::format("a group of {} pairs does not fit the subgroups of {} lanes of the device {}", shape.lanes,
                             device.physical().subgroup_size, device.name()));
-  if (!std::has_single_bit(shape.levels) || shape.levels < 2 || shape.levels > 16 || !std::has_single_bit(shape.workgroups) ||
-      shape.workgroups > chunk_granularity)
+  if (!std::has_single_bit(shape.levels) || shape.levels < 2 || shape.levels > 16 ||
+      !std::has_single_bit(shape.workgroups) || shape.workgroups > chunk_granularity)
     throw Error(Failure::out_of_range, 0,
-                fmt::format("{} levels and {} workgroups: both must be powers of two, 2 to 16 and 1 to {}", shape.levels,
-                            shape.workgroups, chunk_granularity));
+                fmt::format("{} levels and {} workgroups: both must be powers of two, 2 to 16 and 1 to {}",
+                            shape.levels, shape.workgroups, chunk_granularity));
   const Layout layout(shape, device.largest_range(), input.lmax);
-  const Kernel& kernel = device.kernel({"moments", shaders::moments, MOMENTS_BINDINGS, sizeof(shaders::MomentsPush),
-                               {shape.lanes, shape.levels, private_columns(shape, input.lmax),
-                                shape.rows_in_buffer ? 1U : 0U, std::uint32_t(input.column_scale)}});
-  const Kernel& sum_kernel = device.kernel({"moments_sum", shaders::moments_sum, MOMENTS_SUM_BINDINGS,
-                                   sizeof(shaders::MomentsSumPush), {64}});
+  const Kernel& kernel = device.kernel({"moments",
+                                        shaders::moments,
+                                        MOMENTS_BINDINGS,
+                                        sizeof(shaders::MomentsPush),
+                                        {shape.lanes, shape.levels, private_columns(shape, input.lmax),
+                                         shape.rows_in_buffer ? 1U : 0U, std::uint32_t(input.column_scale)}});
+  const Kernel& sum_kernel =
+      device.kernel({"moments_sum", shaders::moments_sum, MOMENTS_SUM_BINDINGS, sizeof(shaders::MomentsSumPush), {64}});
 
   Buffer pairs(device, input.pairs.size_bytes(), "the triangle pairs");
   Buffer degrees(device, input.last_degrees.size_bytes(), "the last degrees");
@@ -199,9 +205,12 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
           end += shape.workgroups;
         }
         end = std::min(end, active);
-        const shaders::MomentsPush push = {std::ldexp(1.0, input.start_exponent), begin,          end,
+        const shaders::MomentsPush push = {std::ldexp(1.0, input.start_exponent),
+                                           begin,
+                                           end,
                                            slice.first,
-                                           slice.last,                            std::uint32_t(slice.size),
+                                           slice.last,
+                                           std::uint32_t(slice.size),
                                            layout.state_columns()};
         const BufferRange ranges[MOMENTS_BINDINGS] = {
             {&pairs, first * input_bytes, count * input_bytes},
@@ -221,7 +230,8 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
       const BufferRange ranges[MOMENTS_SUM_BINDINGS] = {{&partial, 0, 8 * slice.size * shape.workgroups},
                                                         {&total, 8 * slice.offset, 8 * slice.size}};
       // Enough invocations that none of them loops for long.
-      job.dispatch(sum_kernel, ranges, push_bytes(push), std::uint32_t(std::min<std::uint64_t>((slice.size + 255) / 256, 16384)));
+      job.dispatch(sum_kernel, ranges, push_bytes(push),
+                   std::uint32_t(std::min<std::uint64_t>((slice.size + 255) / 256, 16384)));
     }
   }
   finish_job();
@@ -230,10 +240,11 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
   steps.read(std::as_writable_bytes(std::span(steps_done)));
   for (std::uint32_t g = 0; g < groups; ++g)
     if (steps_done[g] != layout.steps(input.last_degrees[g]))
-      throw Error(Failure::cut_short, 0,
-                  fmt::format("the device {} ended a loop early: group {} of {} ran {} of {} steps; the result would be "
-                              "wrong; use --device cpu and report this",
-                              device.name(), g, groups, steps_done[g], layout.steps(input.last_degrees[g])));
+      throw Error(
+          Failure::cut_short, 0,
+          fmt::format("the device {} ended a loop early: group {} of {} ran {} of {} steps; the result would be "
+                      "wrong; use --device cpu and report this",
+                      device.name(), g, groups, steps_done[g], layout.steps(input.last_degrees[g])));
 
   for (const Slice& slice : layout.slices) {
     std::vector<double> part(slice.size);

@@ -17,7 +17,7 @@ struct MomentsShape {
   std::uint32_t workgroups = 0; ///< workgroups, each with a partial sum; a power of two, at most 64
   bool rows_in_buffer = false;  ///< rows in device memory instead of private memory
   std::uint64_t state_budget = std::uint64_t(512) << 20; ///< bytes of rows in device memory
-  std::uint32_t iteration_budget = 60000; ///< loop iterations an invocation may run in one dispatch
+  std::uint32_t iteration_budget = 60000;                ///< loop iterations an invocation may run in one dispatch
 };
 
 /// Software devices keep rows in private memory; others keep them in device memory, where lanes read them together.
@@ -26,9 +26,9 @@ MomentsShape moments_shape(const GpuFacts& facts, MomentsShape wanted = {});
 /// What the kernel works on.
 struct MomentsInput {
   int lmax = 0;
-  int column_scale = 1;   ///< 1 or 2
-  int start_exponent = 0; ///< rows start at 2^start_exponent
-  std::span<const double> pairs; ///< MOMENTS_INPUTS of each pair: [group][input][lane]
+  int column_scale = 1;                        ///< 1 or 2
+  int start_exponent = 0;                      ///< rows start at 2^start_exponent
+  std::span<const double> pairs;               ///< MOMENTS_INPUTS of each pair: [group][input][lane]
   std::span<const std::uint32_t> last_degrees; ///< of each group, from the largest down
 };
 

@@ -52,11 +52,12 @@ void run(const Options& options, Common& common) {
     write_stdout(mesh_line(body.surface.mesh()) + "\n");
     if (!note.empty()) write_stdout("note: " + note + "\n");
     for (const Path& path : paths)
-      write_stdout(fmt::format("{}: {}; multiply-add peak {:.1f} GFlop/s\n", path.name, device_line(path.backend->facts()),
-                               path.peak * 1e-9));
-    write_stdout(fmt::format("median of {} runs after one to warm up, paths in turn; verified before\n\n", options.runs));
-    write_stdout(fmt::format("  {:>5}  {:<18} {:>10} {:>10} {:>10} {:>8}\n", "lmax", "path", "seconds", "GFlop/s", "of peak",
-                             "ratio"));
+      write_stdout(fmt::format("{}: {}; multiply-add peak {:.1f} GFlop/s\n", path.name,
+                               device_line(path.backend->facts()), path.peak * 1e-9));
+    write_stdout(
+        fmt::format("median of {} runs after one to warm up, paths in turn; verified before\n\n", options.runs));
+    write_stdout(fmt::format("  {:>5}  {:<18} {:>10} {:>10} {:>10} {:>8}\n", "lmax", "path", "seconds", "GFlop/s",
+                             "of peak", "ratio"));
   }
   for (const int lmax : options.lmax) {
     const MomentProblem problem = mass_problem(body, lmax, options.cut_off);
@@ -116,7 +117,9 @@ void add_bench(CLI::App& app, Common& common) {
       ->delimiter(',')
       ->check(CLI::Range(0, largest_degree))
       ->capture_default_str();
-  command->add_option("--cut-off", options->cut_off, "As in expand")->check(CLI::Range(0.0, 1e-3))->capture_default_str();
+  command->add_option("--cut-off", options->cut_off, "As in expand")
+      ->check(CLI::Range(0.0, 1e-3))
+      ->capture_default_str();
   command->add_option("--runs", options->runs, "Timed runs of each")->check(CLI::Range(1, 1000))->capture_default_str();
   command->add_flag("--json", options->json, "As JSON");
   add_common_options(*command, common);

@@ -8,9 +8,10 @@
 namespace cowgpu::cli {
 
 void add_common_options(CLI::App& command, Common& common) {
-  command.add_option("--device", common.device,
-                     "Where to compute: auto (the best Vulkan device, else the CPU), cpu, a number or a part of a name "
-                     "from `cowgpu devices`")
+  command
+      .add_option("--device", common.device,
+                  "Where to compute: auto (the best Vulkan device, else the CPU), cpu, a number or a part of a name "
+                  "from `cowgpu devices`")
       ->capture_default_str();
   command.add_option("--threads", common.threads, "Threads of the CPU path (0: all)")
       ->check(CLI::Range(0U, 4096U))
@@ -29,8 +30,8 @@ std::unique_ptr<Backend> open_backend(const Common& common, std::string* note) {
   try {
     return make_gpu_backend(options);
   } catch (const Error& error) {
-    const bool nothing_there = error.fault() == Fault::no_loader || error.fault() == Fault::no_device ||
-                               error.fault() == Fault::no_fp64;
+    const bool nothing_there =
+        error.fault() == Fault::no_loader || error.fault() == Fault::no_device || error.fault() == Fault::no_fp64;
     if (!nothing_there) throw;
     if (note) *note = fmt::format("the CPU path is used, because {}", error.what());
     return make_cpu_backend(common.threads);

@@ -10,7 +10,9 @@ struct Options {
   bool json = false;
 };
 
-std::string mebibytes(std::uint64_t bytes) { return fmt::format("{} MiB", bytes >> 20); }
+std::string mebibytes(std::uint64_t bytes) {
+  return fmt::format("{} MiB", bytes >> 20);
+}
 
 void run(const Options& options) {
   std::string reason;
@@ -43,14 +45,15 @@ void run(const Options& options) {
     const DeviceFacts& d = gpus[i];
     write_stdout(fmt::format("{}: {}\n", i, d.name));
     write_stdout(fmt::format("   {} device, {}, {}\n", d.type, d.api, d.driver));
-    write_stdout(fmt::format("   double precision {}, subgroups of {}, memory {}, buffers to {}, shared memory {} KiB\n",
-                             d.fp64 ? "yes" : "no", d.subgroup, mebibytes(d.memory), mebibytes(d.largest_buffer),
-                             d.shared_memory >> 10));
-    if (!d.usable) write_stdout("   not usable: cowgpu needs double precision, subgroup shuffles and a compute queue\n");
+    write_stdout(fmt::format(
+        "   double precision {}, subgroups of {}, memory {}, buffers to {}, shared memory {} KiB\n",
+        d.fp64 ? "yes" : "no", d.subgroup, mebibytes(d.memory), mebibytes(d.largest_buffer), d.shared_memory >> 10));
+    if (!d.usable)
+      write_stdout("   not usable: cowgpu needs double precision, subgroup shuffles and a compute queue\n");
   }
   if (gpus.empty()) write_stdout(fmt::format("no Vulkan device: {}\n", reason));
-  write_stdout(fmt::format("cpu: {}\n   {} thread{}, {}, memory {}\n", cpu.name, cpu.threads, cpu.threads == 1 ? "" : "s",
-                           cpu.driver, mebibytes(cpu.memory)));
+  write_stdout(fmt::format("cpu: {}\n   {} thread{}, {}, memory {}\n", cpu.name, cpu.threads,
+                           cpu.threads == 1 ? "" : "s", cpu.driver, mebibytes(cpu.memory)));
 }
 
 } // namespace

@@ -103,16 +103,18 @@ void write_plan(const Options& options, const Body& body, const MomentProblem& p
   const plan::Moments plan = plan::moments(problem, int(backend.facts().subgroup));
   const MemoryNeed need = memory_need(options, problem, backend);
   write_stdout(mesh_line(body.surface.mesh()) + "\n");
-  write_stdout(fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, {:.9g}) "
-                           "({}), R = {:.9g}\n",
-                           options.lmax, Coefficients::count(options.lmax), body.origin.x(), body.origin.y(),
-                           body.origin.z(), body.origin_kind, body.brillouin_radius));
+  write_stdout(
+      fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, {:.9g}) "
+                  "({}), R = {:.9g}\n",
+                  options.lmax, Coefficients::count(options.lmax), body.origin.x(), body.origin.y(), body.origin.z(),
+                  body.origin_kind, body.brillouin_radius));
   write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
   write_stdout(fmt::format("work: {} pairs of triangles, {:.3g} of {:.3g} recursion entries after the cut-off {:.0e}\n",
                            plan.pair_count, plan.elements, plan.full_elements, options.cut_off));
-  write_stdout(fmt::format("memory: at most {} MiB on the host and {} MiB on the device, beside the mesh and the program; "
-                           "JSON of about {} MiB\n",
-                           (need.host >> 20) + 1, (need.device + (1 << 20) - 1) >> 20, (json_bytes(options.lmax) >> 20) + 1));
+  write_stdout(
+      fmt::format("memory: at most {} MiB on the host and {} MiB on the device, beside the mesh and the program; "
+                  "JSON of about {} MiB\n",
+                  (need.host >> 20) + 1, (need.device + (1 << 20) - 1) >> 20, (json_bytes(options.lmax) >> 20) + 1));
 }
 
 ExpandResult compute(const Options& options, const Common& common, Body body, std::unique_ptr<Backend> backend,
@@ -126,11 +128,11 @@ ExpandResult compute(const Options& options, const Common& common, Body body, st
   timings.verify = watch.lap();
   const Tensors second = tensors(body);
   timings.total = watch.total();
-  ExpandResult result{common.command,       fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))),
-                      std::move(body),      backend->facts(),
-                      options.cut_off,      std::move(mass),
-                      second,               std::move(run),
-                      timings,              std::move(accuracy),
+  ExpandResult result{common.command,  fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))),
+                      std::move(body), backend->facts(),
+                      options.cut_off, std::move(mass),
+                      second,          std::move(run),
+                      timings,         std::move(accuracy),
                       std::move(notes)};
   return result;
 }
@@ -168,7 +170,8 @@ void run(const Options& options, Common& common) {
   const bool writes_json = options.json || std::any_of(options.outputs.begin(), options.outputs.end(),
                                                        [](const std::string& o) { return ends_with(o, ".json"); });
   if (writes_json && json_bytes(options.lmax) > large_json && !common.quiet)
-    fmt::print(stderr, "cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n", json_bytes(options.lmax) / 1000000);
+    fmt::print(stderr, "cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n",
+               json_bytes(options.lmax) / 1000000);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Sink sink = [&](std::string_view text) {
       check_stop(ConsoleMonitor(ProgressStyle::none));
@@ -187,10 +190,10 @@ void run(const Options& options, Common& common) {
     write_screen(result, write_stdout);
   if (result.accuracy.how != Verify::none && !result.accuracy.passed()) {
     flush_stdout();
-    throw Error(Fault::check_failed, fmt::format("the two paths differ by {:.1e} at degree {}, more than {:.1e}: do not trust "
-                                                 "these numbers; try --device cpu and `cowgpu validate`",
-                                                 result.accuracy.worst(), result.accuracy.worst_degree(),
-                                                 result.accuracy.bound));
+    throw Error(Fault::check_failed,
+                fmt::format("the two paths differ by {:.1e} at degree {}, more than {:.1e}: do not trust "
+                            "these numbers; try --device cpu and `cowgpu validate`",
+                            result.accuracy.worst(), result.accuracy.worst_degree(), result.accuracy.bound));
   }
 }
 
@@ -207,18 +210,21 @@ void add_expand(CLI::App& app, Common& common) {
   command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
       ->capture_default_str();
   command->add_option("--density", options->density, "Mass per cubed length unit of the mesh")->capture_default_str();
-  command->add_option("--cut-off", options->cut_off,
-                      "Leave out, degree by degree, triangles that add up to less than this part of the degree's bound "
-                      "(0: none)")
+  command
+      ->add_option("--cut-off", options->cut_off,
+                   "Leave out, degree by degree, triangles that add up to less than this part of the degree's bound "
+                   "(0: none)")
       ->check(CLI::Range(0.0, 1e-3))
       ->capture_default_str();
-  command->add_option("--verify", options->verify,
-                      "Compute again on a second path: sample (256 triangles), full (all), none")
+  command
+      ->add_option("--verify", options->verify,
+                   "Compute again on a second path: sample (256 triangles), full (all), none")
       ->check(CLI::IsMember({"sample", "full", "none"}))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the sample")->capture_default_str();
   command->add_flag("--json", options->json, "The result as JSON on stdout (data/schemas/cowgpu.result.v1.json)");
-  command->add_option("-o,--output", options->outputs, "Write FILE.json or FILE.csv; can be repeated")->type_name("FILE");
+  command->add_option("-o,--output", options->outputs, "Write FILE.json or FILE.csv; can be repeated")
+      ->type_name("FILE");
   command->add_flag("--dry-run", options->dry_run, "Print the plan and the memory it needs, and stop");
   add_common_options(*command, common);
   command->callback([options, &common] { run(*options, common); });

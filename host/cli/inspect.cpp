@@ -16,7 +16,9 @@ struct Options {
   bool json = false;
 };
 
-nlohmann::ordered_json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+nlohmann::ordered_json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 // Which of the two types the mesh satisfies, and the first reason where it does not.
 struct Fitness {
@@ -98,7 +100,8 @@ void write_text(const RawMesh& mesh, const Audit& a, const Fitness& fit) {
   row("vertex-manifold", a.vertex_manifold ? "yes" : fmt::format("no: {} pinched vertices", a.pinched_vertices));
   row("outward", yes(a.outward));
   row("shells, cavities", fmt::format("{}, {}", a.components, a.cavities));
-  row("Euler characteristic", fmt::format("{}{}", a.euler_characteristic, a.genus ? fmt::format(", genus {}", *a.genus) : ""));
+  row("Euler characteristic",
+      fmt::format("{}{}", a.euler_characteristic, a.genus ? fmt::format(", genus {}", *a.genus) : ""));
   row("degenerate, duplicate", fmt::format("{}, {} faces", a.degenerate_faces, a.duplicate_faces));
   row("unused, coincident", fmt::format("{} vertices, {} places", a.unused_vertices, a.coincident_groups));
   if (a.finite) {
@@ -109,7 +112,8 @@ void write_text(const RawMesh& mesh, const Audit& a, const Fitness& fit) {
   if (a.volume) row("volume", fmt::format("{:.15g}", *a.volume));
   if (a.centre_of_mass) {
     row("centre of mass", point(*a.centre_of_mass));
-    row("Brillouin radius", fmt::format("{:.15g} about it", brillouin_radius(mesh.vertices, mesh.faces, *a.centre_of_mass)));
+    row("Brillouin radius",
+        fmt::format("{:.15g} about it", brillouin_radius(mesh.vertices, mesh.faces, *a.centre_of_mass)));
   }
 }
 

@@ -19,8 +19,9 @@ int run(int argc, char** argv) {
   CLI::App app("Exact multipole moments of triangle meshes, on the GPU and on the CPU");
   app.set_version_flag("--version", std::string("cowgpu ") + version);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 ok, 1 a numeric check failed, 2 usage, 3 bad input, 4 no or lost device, 5 input/output, "
-             "130 interrupted.\nFirst steps: cowgpu expand --lmax 8; cowgpu expand MESH.off --lmax 512 -o moments.json");
+  app.footer(
+      "Exit codes: 0 ok, 1 a numeric check failed, 2 usage, 3 bad input, 4 no or lost device, 5 input/output, "
+      "130 interrupted.\nFirst steps: cowgpu expand --lmax 8; cowgpu expand MESH.off --lmax 512 -o moments.json");
   cli::Common common;
   common.command.assign(argv, argv + argc);
   cli::add_expand(app, common);
@@ -38,9 +39,10 @@ int run(int argc, char** argv) {
     return 0;
   } catch (const CLI::ParseError& error) {
     const CLI::App* at = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
-    return fail(name(Fault::bad_argument).data(),
-                fmt::format("{}; see `{} --help`", error.what(), at == &app ? "cowgpu" : "cowgpu " + at->get_name()).c_str(),
-                2);
+    return fail(
+        name(Fault::bad_argument).data(),
+        fmt::format("{}; see `{} --help`", error.what(), at == &app ? "cowgpu" : "cowgpu " + at->get_name()).c_str(),
+        2);
   }
 }
 

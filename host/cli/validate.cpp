@@ -32,9 +32,10 @@ void run(const Options& options, Common& common) {
   if (!note.empty()) write_stdout("note: " + note + "\n");
   if (gpu) write_stdout("device: " + device_line(backend->facts()) + "\n");
   write_stdout("device: " + device_line(make_cpu_backend(common.threads)->facts()) + "\n");
-  write_stdout(fmt::format("degrees 0 to {}, all triangles; errors of a degree over its norm, or over its bound where the "
-                           "norm is below 1e-3 of that\n\n",
-                           options.lmax));
+  write_stdout(
+      fmt::format("degrees 0 to {}, all triangles; errors of a degree over its norm, or over its bound where the "
+                  "norm is below 1e-3 of that\n\n",
+                  options.lmax));
   std::size_t width = 0;
   for (const Check& check : checks) width = std::max(width, check.what.size());
   write_stdout(fmt::format("  {:<{}}  {:>8}  {:>6}  {:>8}\n", "check", width, "found", "degree", "bound"));
@@ -61,7 +62,9 @@ void add_validate(CLI::App& app, Common& common) {
   command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
       ->check(CLI::Range(0, largest_degree))
       ->capture_default_str();
-  command->add_option("--cut-off", options->cut_off, "As in expand")->check(CLI::Range(0.0, 1e-3))->capture_default_str();
+  command->add_option("--cut-off", options->cut_off, "As in expand")
+      ->check(CLI::Range(0.0, 1e-3))
+      ->capture_default_str();
   add_common_options(*command, common);
   command->callback([options, &common] { run(*options, common); });
 }

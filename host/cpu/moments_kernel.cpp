@@ -67,7 +67,8 @@ HWY_INLINE V combine_im(V x, V y, V z, V same, V above_re, V above_im, V below_r
   return hn::NegMulAdd(y, hn::Add(above_re, below_re), hn::MulAdd(x, hn::Sub(above_im, below_im), hn::Mul(z, same)));
 }
 
-template <bool Scaled> HWY_INLINE V scaled(V below) {
+template <bool Scaled>
+HWY_INLINE V scaled(V below) {
   if constexpr (Scaled) return hn::Mul(below, hn::Set(d, 4.0));
   return below;
 }
@@ -95,9 +96,8 @@ HWY_INLINE void add_lane_sums(const V* a, double* p) {
 #if HWY_TARGET == HWY_SCALAR
   for (int i = 0; i < 2 * levels; ++i) p[i] += hn::GetLane(a[i]);
 #else
-  const auto add_pair = [](V x, V y) HWY_ATTR {
-    return hn::Add(hn::InterleaveLower(d, x, y), hn::InterleaveUpper(d, x, y));
-  };
+  const auto add_pair = [](V x, V y)
+                            HWY_ATTR { return hn::Add(hn::InterleaveLower(d, x, y), hn::InterleaveUpper(d, x, y)); };
   const V p0 = add_pair(a[0], a[1]), p1 = add_pair(a[2], a[3]), p2 = add_pair(a[4], a[5]), p3 = add_pair(a[6], a[7]);
   const auto accumulate = [](V sum, double* to) HWY_ATTR { hn::Store(hn::Add(hn::Load(d, to), sum), d, to); };
   if constexpr (lanes == 2) {
@@ -163,8 +163,9 @@ void mirror(double* origin, double inverse_square) {
   }
 }
 
-template <bool Scaled> void sweeps(const Directions& g, int last, double* rows, const double* phases, double* sums,
-                                   const PartialLayout& layout) {
+template <bool Scaled>
+void sweeps(const Directions& g, int last, double* rows, const double* phases, double* sums,
+            const PartialLayout& layout) {
   double* const origin = rows + 2 * levels * column_doubles; // column of m = 0
   const V zero = hn::Zero(d);
   const Column nothing = {zero, zero, zero, zero, zero, zero};
@@ -233,9 +234,13 @@ void AccumulateGroup(const plan::Moments& plan, std::size_t group, const Partial
     sweeps<true>(g, last, workspace.rows.get(), workspace.phases.get(), partial, layout);
 }
 
-int MomentsLanes() { return int(lanes); }
+int MomentsLanes() {
+  return int(lanes);
+}
 
-std::string SimdName() { return hwy::TargetName(HWY_TARGET); }
+std::string SimdName() {
+  return hwy::TargetName(HWY_TARGET);
+}
 
 } // namespace cowgpu::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -261,9 +266,13 @@ MomentsWorkspace::MomentsWorkspace(int lmax) {
   if (!rows || !phases) throw std::bad_alloc();
 }
 
-int moments_lanes() { return HWY_DYNAMIC_DISPATCH(MomentsLanes)(); }
+int moments_lanes() {
+  return HWY_DYNAMIC_DISPATCH(MomentsLanes)();
+}
 
-std::string simd_name() { return HWY_DYNAMIC_DISPATCH(SimdName)(); }
+std::string simd_name() {
+  return HWY_DYNAMIC_DISPATCH(SimdName)();
+}
 
 void accumulate_group(const plan::Moments& plan, std::size_t group, const PartialLayout& layout,
                       MomentsWorkspace& workspace, double* partial) {

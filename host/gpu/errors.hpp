@@ -21,7 +21,8 @@ inline Fault fault_of(engine::Failure failure) {
 }
 
 /// Runs `call`, turning engine::Error into cowgpu::Error.
-template <class Call> auto translated(const Call& call) {
+template <class Call>
+auto translated(const Call& call) {
   try {
     return call();
   } catch (const engine::Error& error) {

@@ -12,7 +12,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 } // namespace
 
@@ -44,8 +46,8 @@ Coefficients moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const 
   std::vector<double> sums(2 * Coefficients::count(problem.lmax), 0.0);
   sums[0] = std::ldexp(plan.sum_of_dets, plan.start_exponent);
   gpu.take_profile();
-  engine::moments(gpu.device(), shape,
-                  {problem.lmax, plan.column_scale, plan.start_exponent, pairs, last_degrees}, sums, [&](double done) {
+  engine::moments(gpu.device(), shape, {problem.lmax, plan.column_scale, plan.start_exponent, pairs, last_degrees},
+                  sums, [&](double done) {
                     monitor.progress("moments", done);
                     return !monitor.stopped();
                   });

@@ -23,12 +23,13 @@ RawMesh load_benchmark() {
     if (mesh.sha256 == benchmark_sha256) return mesh;
     other += fmt::format("; {} is another mesh (sha256 {})", path.string(), mesh.sha256);
   }
-  throw Error(Fault::mesh_missing,
-              fmt::format("the benchmark mesh is not on this machine: cow.off with sha256 {} was looked for in {}{}. It is "
-                          "cow.off of the libigl tutorial's data (github.com/libigl/libigl-tutorial-data); put it into one "
-                          "of these folders or name its folder in COWGPU_MESHES. The built-in cow needs no file: "
-                          "builtin:cow",
-                          benchmark_sha256, looked, other));
+  throw Error(
+      Fault::mesh_missing,
+      fmt::format("the benchmark mesh is not on this machine: cow.off with sha256 {} was looked for in {}{}. It is "
+                  "cow.off of the libigl tutorial's data (github.com/libigl/libigl-tutorial-data); put it into one "
+                  "of these folders or name its folder in COWGPU_MESHES. The built-in cow needs no file: "
+                  "builtin:cow",
+                  benchmark_sha256, looked, other));
 }
 
 } // namespace

@@ -19,9 +19,9 @@ struct Body {
   double area = 0;
   Vec3 centre_of_mass = Vec3::Zero();
   Box box;
-  Vec3 origin = Vec3::Zero();    ///< of every moment and tensor, in mesh coordinates
-  std::string origin_kind;       ///< "centre of mass", "mesh" or "given"
-  double brillouin_radius = 0;   ///< largest distance of a vertex from `origin`
+  Vec3 origin = Vec3::Zero();  ///< of every moment and tensor, in mesh coordinates
+  std::string origin_kind;     ///< "centre of mass", "mesh" or "given"
+  double brillouin_radius = 0; ///< largest distance of a vertex from `origin`
 
   double mass() const { return density * volume; }
 };

@@ -39,7 +39,8 @@ struct Triangle {
 };
 
 Triangle measure(const MomentProblem& problem, const Face& face, Extended& determinant) {
-  const std::array<ExtendedVec3, 3> x = {reduced(problem, face[0]), reduced(problem, face[1]), reduced(problem, face[2])};
+  const std::array<ExtendedVec3, 3> x = {reduced(problem, face[0]), reduced(problem, face[1]),
+                                         reduced(problem, face[2])};
   determinant = det(x[0], x[1], x[2]);
   const Extended largest = std::max({x[0].squaredNorm(), x[1].squaredNorm(), x[2].squaredNorm()});
   return {double(std::abs(determinant) / 2), double(std::sqrt(largest))};
@@ -97,7 +98,9 @@ TrianglePair make_pair(const MomentProblem& problem, std::uint32_t first, std::u
   std::array<std::uint32_t, 4> corner = {f[0], f[1], f[2], f[2]};
   if (second != unpaired) {
     const Face& g = problem.faces[second];
-    const auto in = [](const Face& face, std::uint32_t v) { return std::find(face.begin(), face.end(), v) != face.end(); };
+    const auto in = [](const Face& face, std::uint32_t v) {
+      return std::find(face.begin(), face.end(), v) != face.end();
+    };
     corner[2] = *std::find_if(f.begin(), f.end(), [&](std::uint32_t v) { return !in(g, v); });
     corner[3] = *std::find_if(g.begin(), g.end(), [&](std::uint32_t v) { return !in(f, v); });
     int shared = 0;
@@ -116,7 +119,9 @@ TrianglePair make_pair(const MomentProblem& problem, std::uint32_t first, std::u
   return pair;
 }
 
-double entries(int degree) { return 0.5 * (degree + 1.0) * (degree + 2.0); }
+double entries(int degree) {
+  return 0.5 * (degree + 1.0) * (degree + 2.0);
+}
 
 void check(const MomentProblem& problem) {
   if (problem.lmax < 0 || problem.lmax > largest_degree)
@@ -155,8 +160,9 @@ Moments moments(const MomentProblem& problem, int lanes) {
     return found[x].radius != found[y].radius ? found[x].radius > found[y].radius : x < y;
   });
   if (!order.empty() && found[order[0]].radius > 1 + 1e-9)
-    throw Error(Fault::bad_argument, fmt::format("the reference radius {} is smaller than the body: a vertex lies at {} of it",
-                                                 problem.reference_radius, found[order[0]].radius));
+    throw Error(Fault::bad_argument,
+                fmt::format("the reference radius {} is smaller than the body: a vertex lies at {} of it",
+                            problem.reference_radius, found[order[0]].radius));
 
   const std::size_t groups = (found.size() + std::size_t(lanes) - 1) / std::size_t(lanes);
   plan.pairs.resize(groups * std::size_t(lanes));

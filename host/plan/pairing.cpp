@@ -48,7 +48,9 @@ std::vector<Neighbours> neighbours(std::span<const Face> faces, std::size_t vert
   return result;
 }
 
-bool degenerate(const Face& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; }
+bool degenerate(const Face& f) {
+  return f[0] == f[1] || f[1] == f[2] || f[2] == f[0];
+}
 
 } // namespace
 
@@ -56,7 +58,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> pair_faces(std::span<const 
   const auto across = neighbours(faces, vertices);
   std::vector<char> used(faces.size(), 0);
   const auto usable = [&](std::uint32_t f) { return f != unpaired && !used[f] && !degenerate(faces[f]); };
-  const auto free_neighbours = [&](std::uint32_t f) { return std::count_if(across[f].begin(), across[f].end(), usable); };
+  const auto free_neighbours = [&](std::uint32_t f) {
+    return std::count_if(across[f].begin(), across[f].end(), usable);
+  };
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   pairs.reserve(faces.size() / 2 + 1);

@@ -11,16 +11,19 @@
 
 namespace cowgpu::reference {
 
-template <class Real> struct ComplexOf {
+template <class Real>
+struct ComplexOf {
   Real re{}, im{};
 };
 
 /// Rows of solid harmonics of one degree, entries m = 0 ... l; m = -1 follows from symmetry.
-template <class Real> using Row = std::vector<ComplexOf<Real>>;
+template <class Real>
+using Row = std::vector<ComplexOf<Real>>;
 
 /// The factors of (d . grad) S_lm in S_{l-1,m}, S_{l-1,m+1} and S_{l-1,m-1} (Hobson 1931, ch. III), for one l:
 /// sqrt(k (l-m)(l+m)), sqrt(k (l-m)(l-m-1))/2, -sqrt(k (l+m)(l+m-1))/2 with k = (2l+1)/(2l-1).
-template <class Real> struct GradientFactors {
+template <class Real>
+struct GradientFactors {
   std::vector<Real> same, above, below;
 
   explicit GradientFactors(int l) : same(std::size_t(l) + 1), above(same.size()), below(same.size()) {

@@ -12,7 +12,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+ordered_json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 ordered_json json_of(const Eigen::Matrix3d& m) {
   ordered_json rows = ordered_json::array();
@@ -55,10 +57,8 @@ ordered_json json_of(const Accuracy& accuracy) {
   constexpr std::array how = {"none", "sample", "full"};
   ordered_json agreements = ordered_json::array();
   for (const Agreement& a : accuracy.agreements)
-    agreements.push_back({{"path", a.path},
-                          {"against", a.against},
-                          {"worst", a.errors.worst},
-                          {"worst_degree", a.errors.worst_degree}});
+    agreements.push_back(
+        {{"path", a.path}, {"against", a.against}, {"worst", a.errors.worst}, {"worst_degree", a.errors.worst_degree}});
   return {{"verify", how[std::size_t(accuracy.how)]},
           {"triangles", accuracy.triangles},
           {"seed", accuracy.seed},
@@ -97,7 +97,9 @@ std::string open_members(const ordered_json& object) {
 
 } // namespace
 
-std::uint64_t json_bytes(int lmax) { return 4096 + 61 * std::uint64_t(Coefficients::count(lmax)); }
+std::uint64_t json_bytes(int lmax) {
+  return 4096 + 61 * std::uint64_t(Coefficients::count(lmax));
+}
 
 void write_json(const ExpandResult& result, const Sink& sink) {
   const ordered_json head = {{"schema", "cowgpu.result.v1"},

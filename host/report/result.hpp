@@ -19,7 +19,7 @@ struct Timings {
   double device = 0;  ///< opening the device
   double moments = 0; ///< planning, computing, normalising
   double verify = 0;
-  double total = 0;   ///< since the program started
+  double total = 0; ///< since the program started
 };
 
 /// Result of `expand`.
@@ -29,12 +29,12 @@ struct ExpandResult {
   Body body;
   DeviceFacts device;
   double cut_off = 0;
-  Coefficients mass;                ///< about body.origin
+  Coefficients mass; ///< about body.origin
   Tensors tensors;
   RunReport run;
   Timings timings;
   Accuracy accuracy;
-  std::vector<std::string> notes;   ///< sentences: what was done to the mesh, why the CPU was used
+  std::vector<std::string> notes; ///< sentences: what was done to the mesh, why the CPU was used
 };
 
 /// Where text goes: a stream or a file.

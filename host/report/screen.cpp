@@ -8,7 +8,9 @@
 namespace cowgpu {
 namespace {
 
-std::string vector_text(const Vec3& v) { return fmt::format("({:.12g}, {:.12g}, {:.12g})", v.x(), v.y(), v.z()); }
+std::string vector_text(const Vec3& v) {
+  return fmt::format("({:.12g}, {:.12g}, {:.12g})", v.x(), v.y(), v.z());
+}
 
 std::string complex_text(int m, std::complex<double> q) {
   if (m == 0) return fmt::format("{:+.6e}", q.real());
@@ -20,7 +22,8 @@ void write_table(const Coefficients& q, const Sink& sink) {
   std::vector<std::string> rows;
   for (int l = 0; l <= std::min(q.lmax, 4); ++l)
     for (int m = 0; m <= l; ++m)
-      rows.push_back(fmt::format("{:>3} {:>3}  {:<36}", l, m, complex_text(m, q(l, m) * std::pow(q.reference_radius, l))));
+      rows.push_back(
+          fmt::format("{:>3} {:>3}  {:<36}", l, m, complex_text(m, q(l, m) * std::pow(q.reference_radius, l))));
   const std::size_t half = (rows.size() + 1) / 2;
   sink(fmt::format("  {:>3} {:>3}  {:<36}", "l", "m", "Q_lm"));
   sink(rows.size() > 1 ? fmt::format("{:>3} {:>3}  Q_lm\n", "l", "m") : "\n");
@@ -44,14 +47,13 @@ void write_accuracy(const ExpandResult& result, const Sink& sink) {
     return;
   }
   for (const Agreement& a : accuracy.agreements)
-    sink(fmt::format("accuracy: {} and {} agree to {:.1e} (worst degree {}, bound {:.1e}: {}) on {} triangles{}, "
-                     "degrees 0 to {}\n",
-                     a.path, a.against, a.errors.worst, a.errors.worst_degree, accuracy.bound,
-                     accuracy.passed() ? "passed" : "FAILED", accuracy.triangles,
-                     accuracy.triangles < result.body.surface.faces().size()
-                         ? fmt::format(" (sample, seed {})", accuracy.seed)
-                         : "",
-                     result.mass.lmax));
+    sink(fmt::format(
+        "accuracy: {} and {} agree to {:.1e} (worst degree {}, bound {:.1e}: {}) on {} triangles{}, "
+        "degrees 0 to {}\n",
+        a.path, a.against, a.errors.worst, a.errors.worst_degree, accuracy.bound,
+        accuracy.passed() ? "passed" : "FAILED", accuracy.triangles,
+        accuracy.triangles < result.body.surface.faces().size() ? fmt::format(" (sample, seed {})", accuracy.seed) : "",
+        result.mass.lmax));
 }
 
 } // namespace
@@ -60,10 +62,11 @@ void write_screen(const ExpandResult& result, const Sink& sink) {
   const Coefficients& q = result.mass;
   sink(mesh_line(result.body.surface.mesh()) + "\n");
   for (const std::string& note : result.notes) sink("note: " + note + "\n");
-  sink(fmt::format("computed: mass multipoles to degree {}, {} coefficients, in {:.3f} s ({} pairs of triangles, {:.1f} % of "
-                   "the work after the cut-off {:.0e})\n",
-                   q.lmax, q.values.size(), result.run.seconds, result.run.pairs,
-                   100 * std::min(1.0, result.run.elements / result.run.full_elements), result.cut_off));
+  sink(fmt::format(
+      "computed: mass multipoles to degree {}, {} coefficients, in {:.3f} s ({} pairs of triangles, {:.1f} % of "
+      "the work after the cut-off {:.0e})\n",
+      q.lmax, q.values.size(), result.run.seconds, result.run.pairs,
+      100 * std::min(1.0, result.run.elements / result.run.full_elements), result.cut_off));
   sink("device: " + device_line(result.device) + "\n");
   write_accuracy(result, sink);
   const Timings& t = result.timings;
@@ -78,8 +81,10 @@ void write_screen(const ExpandResult& result, const Sink& sink) {
   sink(fmt::format("  {:<26} {} ({})\n", "origin", vector_text(result.body.origin), result.body.origin_kind));
   sink(fmt::format("  {:<26} {:.15g}\n", "Brillouin radius R", result.body.brillouin_radius));
 
-  sink("\nleading mass multipoles Q_lm = integral of density r^l Y_lm about the origin: raw (not divided by R^l), in mesh "
-       "units,\nnot conjugated; Y_lm orthonormal with the Condon-Shortley phase, polar axis z; Q_l,-m = (-1)^m conj Q_lm\n");
+  sink("\nleading mass multipoles Q_lm = integral of density r^l Y_lm about the origin: raw (not divided by R^l), in "
+       "mesh "
+       "units,\nnot conjugated; Y_lm orthonormal with the Condon-Shortley phase, polar axis z; Q_l,-m = (-1)^m conj "
+       "Q_lm\n");
   write_table(q, sink);
   sink("\ntensors about the origin\n");
   write_matrix("quadrupole 3 x x - r^2", result.tensors.quadrupole, sink);

@@ -47,6 +47,8 @@ DegreeErrors compare(const Coefficients& a, std::span<const long double> b, std:
   return compare_with(a, bound, [&](std::size_t i) { return std::pair(b[2 * i], b[2 * i + 1]); });
 }
 
-double expected_error(int lmax) { return 3e-14 * std::max(1.0, lmax / 512.0); }
+double expected_error(int lmax) {
+  return 3e-14 * std::max(1.0, lmax / 512.0);
+}
 
 } // namespace cowgpu

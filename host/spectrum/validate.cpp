@@ -34,8 +34,7 @@ Check same_bits(const std::string& what, const Coefficients& a, const Coefficien
 // Q_2m from the traceless tensor T_ij = integral of density (3 x_i x_j - r^2 delta_ij).
 std::vector<std::complex<double>> quadrupole_from(const Eigen::Matrix3d& t) {
   const double pi = std::numbers::pi;
-  return {0.25 * std::sqrt(5 / pi) * t(2, 2),
-          -std::sqrt(15 / (8 * pi)) / 3 * std::complex(t(0, 2), t(1, 2)),
+  return {0.25 * std::sqrt(5 / pi) * t(2, 2), -std::sqrt(15 / (8 * pi)) / 3 * std::complex(t(0, 2), t(1, 2)),
           std::sqrt(15 / (32 * pi)) / 3 * std::complex(t(0, 0) - t(1, 1), 2 * t(0, 1))};
 }
 
@@ -51,14 +50,15 @@ std::vector<Check> validate_moments(const Body& body, int lmax, double cut_off, 
 
   const Coefficients q = make_cpu_backend(threads)->moments(problem, monitor);
   checks.push_back(against("CPU path", q, reference, bound, allowed));
-  checks.push_back(same_bits("CPU path on one thread: other bits than on all",
-                             make_cpu_backend(1)->moments(problem, monitor), q));
+  checks.push_back(
+      same_bits("CPU path on one thread: other bits than on all", make_cpu_backend(1)->moments(problem, monitor), q));
   if (gpu) {
     const Coefficients g = gpu->moments(problem, monitor);
     checks.push_back(against("Vulkan path", g, reference, bound, allowed));
     checks.push_back(same_bits("Vulkan path run twice: other bits", gpu->moments(problem, monitor), g));
     const DegreeErrors paths = compare(g, q, bound);
-    checks.push_back({"Vulkan path against CPU path", paths.worst, allowed, paths.worst_degree, paths.weighed <= allowed});
+    checks.push_back(
+        {"Vulkan path against CPU path", paths.worst, allowed, paths.worst_degree, paths.weighed <= allowed});
   }
 
   const double q00 = body.mass() / std::sqrt(4 * std::numbers::pi);
@@ -71,7 +71,7 @@ std::vector<Check> validate_moments(const Body& body, int lmax, double cut_off, 
     for (int m = 0; m <= 2; ++m)
       worst = std::max(worst, std::abs(q(2, m) * q.reference_radius * q.reference_radius - expected[std::size_t(m)]));
     checks.push_back(within("Q_2m against the Cartesian quadrupole tensor, over the bound",
-                      worst / (bound[2] * q.reference_radius * q.reference_radius), 1e-14, 2));
+                            worst / (bound[2] * q.reference_radius * q.reference_radius), 1e-14, 2));
   }
   return checks;
 }
