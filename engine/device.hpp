@@ -2,21 +2,13 @@
 #pragma once
 
 #include "engine/instance.hpp"
+#include "engine/profile.hpp"
 
 #include <map>
 #include <memory>
 #include <string>
 
 namespace cowgpu::engine {
-
-/// Time the device spent in each kernel, from timestamps around its dispatches.
-struct Profile {
-  struct Entry {
-    std::uint64_t dispatches = 0;
-    double seconds = 0;
-  };
-  std::map<std::string, Entry> kernels;
-};
 
 class Kernel;
 struct KernelInfo;

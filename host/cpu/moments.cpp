@@ -119,14 +119,7 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
     gather(plan, layout, {partial.data(), round}, threads, sums);
   }
   Coefficients result = plan::finish(problem, plan, sums);
-  if (report) {
-    report->seconds = seconds_since(start);
-    report->setup_seconds = setup;
-    report->elements = plan.elements;
-    report->full_elements = plan.full_elements;
-    report->pairs = plan.pair_count;
-    report->kernels.clear();
-  }
+  if (report) *report = plan::report(plan, setup, seconds_since(start));
   return result;
 }
 

@@ -53,12 +53,7 @@ Coefficients moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const 
                   });
   Coefficients result = plan::finish(problem, plan, sums);
   if (report) {
-    report->seconds = seconds_since(start);
-    report->setup_seconds = setup;
-    report->elements = plan.elements;
-    report->full_elements = plan.full_elements;
-    report->pairs = plan.pair_count;
-    report->kernels.clear();
+    *report = plan::report(plan, setup, seconds_since(start));
     for (const auto& k : gpu.take_profile()) report->kernels.push_back({k.kernel, k.dispatches, k.seconds});
   }
   return result;

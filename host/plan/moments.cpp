@@ -218,6 +218,16 @@ std::vector<double> lane_inputs(const Moments& plan, std::span<const std::uint32
   return all;
 }
 
+RunReport report(const Moments& plan, double setup_seconds, double seconds) {
+  RunReport report;
+  report.seconds = seconds;
+  report.setup_seconds = setup_seconds;
+  report.elements = plan.elements;
+  report.full_elements = plan.full_elements;
+  report.pairs = plan.pair_count;
+  return report;
+}
+
 std::uint64_t bytes(const MomentProblem& problem) {
   return std::uint64_t(problem.faces.size()) * 304 + std::uint64_t(problem.vertices.size()) * 8;
 }

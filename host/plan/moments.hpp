@@ -16,9 +16,11 @@
 // version of int_a^b x^p dx", Theorem 2.1), and S_lm(x) = (x.grad)^l S_lm / l!. v_l[m] is a real number times
 // exp(i m phi_C). Two triangles ABC, ABD that share an edge share e and t and need two rows v.
 //
-// Range. |U_lm| <= g_lm sqrt((l-m)!(l+m)!)/l!-free bound: for |x| <= 1, |U_lm| <= max_m g_lm = O(1) for s = 1 (smallest at
-// m = l: 2^-l) and O(2^(0.33 l)) for s = 2. The rows therefore start at 2^start instead of 1, start chosen so that
-// nothing that matters leaves the range of a double.
+// Range. For |x| <= 1, |S_lm| <= sqrt((2l+1)/4pi), so |U_lm| <= s^m l!/sqrt((l-m)!(l+m)!). For s = 1 that is at most 1 and
+// falls to about 2^-l at m = l; for s = 2 it is 1 at both ends and at most 2^(0.322 l), at m = 0.6 l. The rows start at
+// 2^start_exponent instead of 1, chosen so that neither overflows to degree 4096 and that whatever is above 1e-150 of a
+// degree's bound stays normal. Below that, rows of vertices near the z axis pass through denormals, which the paths count
+// as zero (host/flush_denormals.hpp).
 //
 // Cut-off. On the triangle's tetrahedron |S_lm| <= r^l sqrt((2l+1)/4pi), r its largest vertex radius, and by homogeneity
 // the integral of (|x|/r)^l over it is at most 3/(l+3) of its volume |det|/6. So a set D of triangles adds at most
@@ -67,6 +69,9 @@ Moments moments(const MomentProblem& problem, int lanes);
 inline constexpr std::size_t inputs = 16;
 void lane_inputs(const Moments& plan, std::size_t group, double* to);
 std::vector<double> lane_inputs(const Moments& plan, std::span<const std::uint32_t> order);
+
+/// What a path reports of a run by this plan; kernel times are its own to add.
+RunReport report(const Moments& plan, double setup_seconds, double seconds);
 
 /// Bound of the bytes moments() allocates: 304 a face and 8 a vertex.
 std::uint64_t bytes(const MomentProblem& problem);
