@@ -95,7 +95,7 @@ std::shared_ptr<Instance> Instance::create(bool validation) {
     throw Error(Failure::no_loader, 0,
                 "there is no Vulkan loader (libvulkan.so.1) on this machine; install libvulkan1 and a driver "
                 "(mesa-vulkan-drivers has a software one), or use --device cpu");
-  const std::shared_ptr<Instance> instance(new Instance);
+  std::shared_ptr<Instance> instance(new Instance);
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.pApplicationName = "cowgpu";
   application.apiVersion = VK_API_VERSION_1_2;
@@ -145,6 +145,7 @@ std::vector<PhysicalDevice> Instance::devices() const {
   std::vector<VkPhysicalDevice> handles(count);
   check(vkEnumeratePhysicalDevices(handle_, &count, handles.data()), "list the devices");
   std::vector<PhysicalDevice> devices;
+  devices.reserve(count);
   for (const VkPhysicalDevice handle : handles) devices.push_back(examine(handle));
   std::stable_sort(devices.begin(), devices.end(), [](const PhysicalDevice& a, const PhysicalDevice& b) {
     return rank(a.properties.deviceType) < rank(b.properties.deviceType);

@@ -9,7 +9,7 @@ namespace cowgpu::engine {
 std::uint32_t loop_iterations(Device& device, std::uint32_t iterations) {
   const Kernel& kernel =
       device.kernel({"loop_limit", shaders::loop_limit, LOOP_LIMIT_BINDINGS, sizeof(shaders::LoopLimitPush), {8}});
-  Buffer result(device, 8 * 4, "the counts");
+  Buffer result(device, 32, "the counts");
   const BufferRange range{&result};
   const shaders::LoopLimitPush push = {iterations};
   Job job(device);

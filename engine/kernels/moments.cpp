@@ -107,14 +107,14 @@ std::span<const std::byte> push_bytes(const T& push) {
 // From the total's columns to rows sorted by l, then m.
 void gather(const MomentsShape& shape, const Layout& layout, const Slice& slice, std::span<const double> total,
             std::span<double> sums) {
-  const std::uint32_t levels = shape.levels;
+  const std::uint64_t levels = shape.levels;
   const double* sweep = total.data();
-  for (std::uint32_t degree = slice.first; degree <= slice.last; degree += levels) {
-    for (std::uint32_t j = 0; j < levels && degree + j <= slice.last; ++j) {
+  for (std::uint32_t degree = slice.first; degree <= slice.last; degree += shape.levels) {
+    for (std::uint64_t j = 0; j < levels && degree + j <= slice.last; ++j) {
       const std::uint64_t l = degree + j;
       double* row = &sums[l * (l + 1)];
       for (std::uint64_t m = 0; m <= l; ++m) {
-        const double* column = sweep + 2 * levels * (m + levels + j - 1) + 2 * std::uint64_t(j);
+        const double* column = sweep + 2 * (levels * (m + levels + j - 1) + j);
         row[2 * m] = column[0];
         row[2 * m + 1] = column[1];
       }

@@ -63,9 +63,9 @@ void gather(const plan::Moments& plan, const PartialLayout& layout, std::span<co
         if (l > plan.lmax) break;
         double* row = &sums[2 * Coefficients::index(l, 0)];
         for (int m = 0; m <= l; ++m) {
-          const double* from = column + 2 * degrees_per_sweep * (m + j + degrees_per_sweep) + 2 * j;
-          row[2 * m] += from[0];
-          row[2 * m + 1] += from[1];
+          const double* from = column + std::ptrdiff_t{2} * (degrees_per_sweep * (m + j + degrees_per_sweep) + j);
+          *row++ += from[0];
+          *row++ += from[1];
         }
       }
       std::fill(column, part.get() + layout.offset[n + 1], 0.0);
@@ -126,7 +126,7 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
 std::uint64_t moments_bytes(const MomentProblem& problem, unsigned threads) {
   const PartialLayout layout(problem.lmax);
   return plan::bytes(problem) + round_size(layout, threads, partials(layout)) * 8 * layout.size() +
-         threads * 640 * (std::uint64_t(problem.lmax) + 48) + 32 * Coefficients::count(problem.lmax);
+         640 * std::uint64_t(threads) * (std::uint64_t(problem.lmax) + 48) + 32 * Coefficients::count(problem.lmax);
 }
 
 } // namespace cowgpu::cpu

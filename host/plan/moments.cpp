@@ -255,7 +255,7 @@ Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span
       const std::size_t i = Coefficients::index(l, m);
       const Extended im = m == 0 ? 0 : factor * sums[2 * i + 1];
       result.values[i] = {double(factor * sums[2 * i]), double(im)};
-      if (m < l) factor *= root[std::size_t(l + m + 1)] * inverse_root[std::size_t(l - m)] / plan.column_scale;
+      if (m < l) factor *= root[std::size_t(l) + std::size_t(m) + 1] * inverse_root[std::size_t(l - m)] / plan.column_scale;
     }
   }
   return result;
