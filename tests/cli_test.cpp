@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -197,6 +199,32 @@ TEST_CASE("an interrupt ends long work with 130 and leaves the old file", "[cli]
     CHECK(read_text(folder / "out.json") == "old");
     CHECK(files_in(folder.path()) == 1);
   }
+}
+
+TEST_CASE("an interrupt ends the wait for a pipe", "[cli]") {
+  const TemporaryFolder folder;
+  REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  ProgramOptions options;
+  options.interrupt_after = 0.5;
+  const ProgramRun run = run_program({"inspect", folder / "pipe"}, options);
+  CHECK(run.exit_code == 130);
+  CHECK_THAT(run.err, Contains("[interrupted]"));
+}
+
+TEST_CASE("outputs may stand before the mesh and be named twice", "[cli]") {
+  const TemporaryFolder folder;
+  const ProgramRun run = run_program(
+      {"expand", "-o", folder / "a.json", "-o", folder / "b.csv", "builtin:box", "--lmax", "2", "--device", "cpu"});
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(run.out, StartsWith("mesh builtin:box"));
+  CHECK(files_in(folder.path()) == 2);
+}
+
+TEST_CASE("a device without an end is refused as too large", "[cli]") {
+  const ProgramRun run = run_program({"inspect", "/dev/zero"});
+  CHECK(run.exit_code == 3);
+  CHECK_THAT(run.err, Contains("[too-large]"));
 }
 
 TEST_CASE("progress as JSON lines goes to standard error", "[cli]") {

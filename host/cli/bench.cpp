@@ -115,6 +115,7 @@ void add_bench(CLI::App& app, Common& common) {
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degrees, separated by commas")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::Range(0, largest_degree))
       ->capture_default_str();
   command->add_option("--cut-off", options->cut_off, "As in expand")

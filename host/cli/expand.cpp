@@ -224,7 +224,8 @@ void add_expand(CLI::App& app, Common& common) {
   command->add_option("--seed", options->seed, "Of the sample")->capture_default_str();
   command->add_flag("--json", options->json, "The result as JSON on stdout (data/schemas/cowgpu.result.v1.json)");
   command->add_option("-o,--output", options->outputs, "Write FILE.json or FILE.csv; can be repeated")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   command->add_flag("--dry-run", options->dry_run, "Print the plan and the memory it needs, and stop");
   add_common_options(*command, common);
   command->callback([options, &common] { run(*options, common); });

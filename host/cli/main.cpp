@@ -53,7 +53,9 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const Error& error) {
-    return fail(name(error.fault()).data(), error.what(), exit_code(error.fault()));
+    // Whatever fails once the user has asked to stop fails because of that.
+    const Fault fault = cli::stop_requested ? Fault::interrupted : error.fault();
+    return fail(name(fault).data(), error.what(), exit_code(fault));
   } catch (const std::bad_alloc&) {
     return fail("too-large", "this machine has not enough memory for this; lower --lmax or take a smaller mesh", 3);
   } catch (const std::exception& error) {

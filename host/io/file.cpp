@@ -16,6 +16,7 @@ namespace cowgpu {
 namespace {
 
 constexpr std::size_t chunk = std::size_t{1} << 16;
+constexpr std::size_t endless = std::size_t{1} << 30; // of a pipe or a device
 
 [[noreturn]] void fail(const std::filesystem::path& path, int reason) {
   throw Error(Fault::cannot_read,
@@ -41,9 +42,13 @@ std::string read_all(int fd, const std::filesystem::path& path) {
   std::string bytes(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : chunk, '\0');
   std::size_t size = 0;
   for (;;) {
-    if (size == bytes.size()) bytes.resize(2 * size);
+    if (size == bytes.size()) {
+      if (!S_ISREG(status.st_mode) && size > endless)
+        throw Error(Fault::too_large,
+                    fmt::format("{}: no end after {} GiB; is it a device?", path.string(), size >> 30));
+      bytes.resize(2 * size);
+    }
     const ssize_t got = ::read(fd, bytes.data() + size, bytes.size() - size);
-    if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(path, errno);
     if (got == 0) break;
     size += static_cast<std::size_t>(got);
