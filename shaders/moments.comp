@@ -101,7 +101,7 @@ void main() {
     const double c_cos = inputs[at + 10 * LANES], c_sin = inputs[at + 11 * LANES];
     const double d_cos = inputs[at + 12 * LANES], d_sin = inputs[at + 13 * LANES];
     const double det_c = inputs[at + 14 * LANES], det_d = inputs[at + 15 * LANES];
-    const int group_last = int(last_degrees[group]);
+    const int group_last = int(last_degrees[push.first_group + group]);
     const int last = min(group_last, int(push.last_degree));
     const int columns = last + 4 * LEVELS;
     state_base = group * push.state_columns * MOMENTS_ROWS * LANES + lane;
@@ -194,7 +194,7 @@ void main() {
                                         -factor * c.ti));
       }
     }
-    if (lane == 0) steps_done[group] += steps;
+    if (lane == 0) steps_done[push.first_group + group] += steps;
     if (!ROWS_IN_BUFFER && group_last > last)
       for (int i = 0; i <= last + LEVELS; ++i) store_state(i, load_column(i));
   }

@@ -33,7 +33,8 @@ namespace cowgpu::shaders {
 
 struct MomentsPush {
   double start;     // rows start at this power of two
-  uint begin_group; // this dispatch works on groups begin ... end-1, counted from the bound ranges' start
+  uint first_group;    // of the chunk that the pairs and the state are bound for
+  uint begin_group;    // this dispatch works on groups begin ... end-1, counted from the chunk's first
   uint end_group;
   uint first_degree;   // of the slice, 1 or one past the end of the slice before
   uint last_degree;    // of the slice
@@ -48,7 +49,7 @@ struct MomentsSumPush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(MomentsPush) == 32 && sizeof(MomentsPush) <= 128, "push constants: 128 bytes everywhere");
+static_assert(sizeof(MomentsPush) == 40 && sizeof(MomentsPush) <= 128, "push constants: 128 bytes everywhere");
 static_assert(sizeof(MomentsSumPush) == 12);
 } // namespace cowgpu::shaders
 #endif

@@ -221,6 +221,54 @@ TEST_CASE("outputs may stand before the mesh and be named twice", "[cli]") {
   CHECK(files_in(folder.path()) == 2);
 }
 
+TEST_CASE("faces over the same three vertices do no harm", "[cli]") {
+  const TemporaryFolder folder;
+  // A cube of edge 1 with a doubled fin outside, which encloses nothing.
+  std::string fin = cube;
+  fin.replace(fin.find("8 6 0"), 5, "11 8 0");
+  fin.insert(fin.find("4 0 3 2 1"), "2 0 0\n2.5 1 .3\n2.2 .2 1.1\n");
+  write_text(folder / "fin.off", fin + "3 8 9 10\n3 8 10 9\n");
+  for (const char* device : {"cpu", "auto"}) {
+    const ProgramRun run = run_program({"expand", folder / "fin.off", "--lmax", "6", "--device", device});
+    INFO(run.out << run.err);
+    CHECK(run.exit_code == 0);
+    CHECK_THAT(run.out, Contains("volume                     1\n"));
+    CHECK(run_program({"validate", folder / "fin.off", "--lmax", "6", "--device", device}).exit_code == 0);
+  }
+}
+
+TEST_CASE("a negative density negates and still agrees", "[cli]") {
+  const ProgramRun run = run_program({"expand", "builtin:box", "--density", "-1", "--lmax", "6", "--device", "cpu"});
+  INFO(run.out << run.err);
+  CHECK(run.exit_code == 0);
+}
+
+TEST_CASE("a sample that lies in the origin is measured by the body's radius", "[cli]") {
+  const TemporaryFolder folder;
+  std::string many = cube;
+  many.replace(many.find("8 6 0"), 5, "9 3006 0");
+  many.insert(many.find("4 0 3 2 1"), "0 0 0\n");
+  for (int i = 0; i < 3000; ++i) many += "3 8 8 8\n";
+  write_text(folder / "many.off", many);
+  const ProgramRun run =
+      run_program({"expand", folder / "many.off", "--origin", "mesh", "--lmax", "4", "--device", "cpu"});
+  INFO(run.out << run.err);
+  CHECK(run.exit_code == 0);
+}
+
+TEST_CASE("a closed or full standard error stops nothing and spoils no file", "[cli]") {
+  const TemporaryFolder folder;
+  ProgramOptions options;
+  options.close_stderr = true;
+  CHECK(run_program({"expand", "no such file.off"}, options).exit_code == 5);
+  const ProgramRun run = run_program(
+      {"expand", "builtin:box", "--lmax", "2", "--device", "cpu", "-o", folder / "a.json", "-o", folder / "b.csv"},
+      options);
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(read_text(folder / "a.json"), StartsWith("{"));
+  CHECK_THAT(read_text(folder / "b.csv"), StartsWith("# cowgpu"));
+}
+
 TEST_CASE("a device without an end is refused as too large", "[cli]") {
   const ProgramRun run = run_program({"inspect", "/dev/zero"});
   CHECK(run.exit_code == 3);

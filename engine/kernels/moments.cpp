@@ -16,7 +16,7 @@
 namespace cowgpu::engine {
 namespace {
 
-constexpr std::uint32_t chunk_granularity = 64; // keeps every bound range aligned to 256 bytes
+constexpr std::uint32_t most_workgroups = 64;   // each has a partial sum
 constexpr std::uint32_t dispatches_per_job = 4; // a stop is answered between jobs
 
 // Degrees first ... last of all groups, in one go or after the slice before.
@@ -48,8 +48,10 @@ public:
     }
     const std::uint64_t group_bytes =
         std::max<std::uint64_t>(keeps_state() ? state_bytes() : 0, std::uint64_t(8) * MOMENTS_INPUTS * shape.lanes);
-    const std::uint64_t budget = std::min(keeps_state() ? shape.state_budget : largest_range, largest_range);
-    chunk = std::max<std::uint64_t>(budget / group_bytes / chunk_granularity, 1) * chunk_granularity;
+    const std::uint64_t budget = keeps_state() ? std::min(shape.state_budget, largest_range) : largest_range;
+    chunk = std::max<std::uint64_t>(budget / group_bytes, 1);
+    // Whole turns of the workgroups, so that a group's partial sum does not depend on the chunk.
+    if (chunk > shape.workgroups) chunk -= chunk % shape.workgroups;
   }
 
   // Columns that one sweep from `degree` writes, three an iteration.
@@ -83,7 +85,7 @@ public:
   std::uint64_t total_doubles() const { return slices.empty() ? 1 : slices.back().offset + slices.back().size; }
 
   std::vector<Slice> slices;
-  std::uint64_t chunk = chunk_granularity; // groups worked on through all slices before the next ones
+  std::uint64_t chunk = 1; // groups worked on through all slices before the next ones
 
 private:
   const MomentsShape& shape_;
@@ -151,10 +153,10 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
                 fmt::format("a group of {} pairs does not fit the subgroups of {} lanes of the device {}", shape.lanes,
                             device.physical().subgroup_size, device.name()));
   if (!std::has_single_bit(shape.levels) || shape.levels < 2 || shape.levels > 16 ||
-      !std::has_single_bit(shape.workgroups) || shape.workgroups > chunk_granularity)
+      !std::has_single_bit(shape.workgroups) || shape.workgroups > most_workgroups)
     throw Error(Failure::out_of_range, 0,
                 fmt::format("{} levels and {} workgroups: both must be powers of two, 2 to 16 and 1 to {}",
-                            shape.levels, shape.workgroups, chunk_granularity));
+                            shape.levels, shape.workgroups, most_workgroups));
   const Layout layout(shape, device.largest_range(), input.lmax);
   const Kernel& kernel = device.kernel({"moments",
                                         shaders::moments,
@@ -206,6 +208,7 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
         }
         end = std::min(end, active);
         const shaders::MomentsPush push = {std::ldexp(1.0, input.start_exponent),
+                                           std::uint32_t(first),
                                            begin,
                                            end,
                                            slice.first,
@@ -214,10 +217,10 @@ void moments(Device& device, const MomentsShape& shape, const MomentsInput& inpu
                                            layout.state_columns()};
         const BufferRange ranges[MOMENTS_BINDINGS] = {
             {&pairs, first * input_bytes, count * input_bytes},
-            {&degrees, first * 4, std::uint64_t(count) * 4},
+            {&degrees, 0, 0},
             {&state, 0, layout.keeps_state() ? std::min<std::uint64_t>(count, resident) * layout.state_bytes() : 0},
             {&partial, 0, 8 * slice.size * shape.workgroups},
-            {&steps, first * 4, std::uint64_t(count) * 4}};
+            {&steps, 0, 0}};
         job.dispatch(kernel, ranges, push_bytes(push), std::min(shape.workgroups, end - begin));
         for (std::uint32_t g = begin; g < end; ++g) {
           const double to = std::min(last_degree(g), slice.last), from = slice.first - 1.0;

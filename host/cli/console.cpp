@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -28,6 +29,15 @@ extern "C" void on_signal(int signal) {
 
 } // namespace
 
+void open_standard_streams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(fd, F_GETFD) < 0 && errno == EBADF) open("/dev/null", fd == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+void say(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
 void catch_signals() {
   // Without SA_RESTART, so that a read that waits for a pipe ends too.
   struct sigaction action {};
@@ -39,6 +49,7 @@ void catch_signals() {
 }
 
 void write_stdout(std::string_view text) {
+  if (stop_requested) throw Error(Fault::interrupted, "interrupted while the result was written");
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) stdout_failed();
 }
 
@@ -65,20 +76,20 @@ void ConsoleMonitor::progress(const char* what, double fraction) {
   const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
   if (style_ == ProgressStyle::jsonl) {
     const nlohmann::json line = {{"what", what}, {"fraction", fraction}, {"seconds", elapsed}, {"seconds_left", left}};
-    fmt::print(stderr, "{}\n", line.dump());
+    say(fmt::format("{}\n", line.dump()));
     return;
   }
   constexpr int width = 30;
   const int full = int(width * fraction);
-  fmt::print(stderr, "\r{} [{}{}] {:3.0f} %, {:.0f} s, about {:.0f} s left\033[K", what,
-             std::string(std::size_t(full), '#'), std::string(std::size_t(width - full), ' '), 100 * fraction, elapsed,
-             left);
+  say(fmt::format("\r{} [{}{}] {:3.0f} %, {:.0f} s, about {:.0f} s left\033[K", what,
+                  std::string(std::size_t(full), '#'), std::string(std::size_t(width - full), ' '), 100 * fraction,
+                  elapsed, left));
   std::fflush(stderr);
   shown_ = true;
 }
 
 void ConsoleMonitor::clear() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) say("\r\033[K");
   std::fflush(stderr);
   shown_ = false;
 }

@@ -18,7 +18,14 @@ extern std::atomic<bool> stop_requested;
 /// file-size limit becomes an error of the write.
 void catch_signals();
 
-/// Writes to standard output; Error(cannot_write) if it is closed or full.
+/// Puts /dev/null where standard input, output or error is closed, so that no file of ours gets its number; what stands
+/// for standard output cannot be written, which is reported like any other failure.
+void open_standard_streams();
+
+/// Writes to standard error. Nobody is left to tell if that fails, so it is ignored.
+void say(std::string_view text);
+
+/// Writes to standard output; Error(cannot_write) if it is closed or full, Error(interrupted) once a stop is requested.
 void write_stdout(std::string_view text);
 /// Flushes standard output, with the same error.
 void flush_stdout();

@@ -125,6 +125,7 @@ ExpandResult compute(const Options& options, const Common& common, Body body, st
   Coefficients mass = backend->moments(problem, monitor, &run);
   timings.moments = watch.lap();
   Accuracy accuracy = verify_moments(problem, *backend, parse_verify(options.verify), options.seed, monitor);
+  if (accuracy.how != Verify::none) accuracy.agreements.push_back(compare_with_tensors(body, mass));
   timings.verify = watch.lap();
   const Tensors second = tensors(body);
   timings.total = watch.total();
@@ -155,7 +156,7 @@ void run(const Options& options, Common& common) {
   auto backend = open_backend(common, &note);
   timings.device = watch.lap();
   if (!note.empty()) {
-    if (!common.quiet) fmt::print(stderr, "cowgpu: {}\n", note);
+    if (!common.quiet) say(fmt::format("cowgpu: {}\n", note));
     notes.push_back(note);
   }
   const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
@@ -170,8 +171,8 @@ void run(const Options& options, Common& common) {
   const bool writes_json = options.json || std::any_of(options.outputs.begin(), options.outputs.end(),
                                                        [](const std::string& o) { return ends_with(o, ".json"); });
   if (writes_json && json_bytes(options.lmax) > large_json && !common.quiet)
-    fmt::print(stderr, "cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n",
-               json_bytes(options.lmax) / 1000000);
+    say(fmt::format("cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n",
+                    json_bytes(options.lmax) / 1000000));
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Sink sink = [&](std::string_view text) {
       check_stop(ConsoleMonitor(ProgressStyle::none));
@@ -182,7 +183,7 @@ void run(const Options& options, Common& common) {
     else
       write_csv(result, sink);
     files[i]->commit();
-    if (!common.quiet) fmt::print(stderr, "cowgpu: wrote {}\n", options.outputs[i]);
+    if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.outputs[i]));
   }
   if (options.json)
     write_json(result, write_stdout);

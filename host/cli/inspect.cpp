@@ -119,8 +119,12 @@ void write_text(const RawMesh& mesh, const Audit& a, const Fitness& fit) {
 
 void run(const Options& options) {
   const RawMesh mesh = load_mesh(options.mesh);
+  const ConsoleMonitor stop(ProgressStyle::none);
+  check_stop(stop);
   const Audit facts = audit(mesh);
+  check_stop(stop);
   const Fitness fit = fitness(mesh);
+  check_stop(stop);
   if (options.json)
     write_json(mesh, facts, fit);
   else

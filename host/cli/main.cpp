@@ -11,7 +11,7 @@ using namespace cowgpu;
 namespace {
 
 int fail(const char* name, const char* what, int code) {
-  fmt::print(stderr, "cowgpu: error [{}]: {}\n", name, what);
+  cli::say(fmt::format("cowgpu: error [{}]: {}\n", name, what));
   return code;
 }
 
@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+  cli::open_standard_streams();
   cli::catch_signals();
   try {
     return run(argc, argv);

@@ -255,7 +255,8 @@ Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span
       const std::size_t i = Coefficients::index(l, m);
       const Extended im = m == 0 ? 0 : factor * sums[2 * i + 1];
       result.values[i] = {double(factor * sums[2 * i]), double(im)};
-      if (m < l) factor *= root[std::size_t(l) + std::size_t(m) + 1] * inverse_root[std::size_t(l - m)] / plan.column_scale;
+      if (m < l)
+        factor *= root[std::size_t(l) + std::size_t(m) + 1] * inverse_root[std::size_t(l - m)] / plan.column_scale;
     }
   }
   return result;
@@ -267,7 +268,7 @@ std::vector<double> degree_bound(const MomentProblem& problem) {
   Extended unused = 0;
   for (const Face& face : problem.faces) triangles.push_back(measure(problem, face, unused));
   std::vector<double> bound = radial_sums(std::move(triangles), problem.lmax);
-  const double unit = problem.density * std::pow(problem.reference_radius, 3);
+  const double unit = std::abs(problem.density) * std::pow(problem.reference_radius, 3);
   for (std::size_t l = 0; l < bound.size(); ++l)
     bound[l] *= unit * std::sqrt((2 * double(l) + 1) / (4 * std::numbers::pi)) / (double(l) + 3);
   return bound;

@@ -80,7 +80,7 @@ std::uint64_t bytes(const MomentProblem& problem);
 /// Coefficients, into coefficients.
 Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums);
 
-/// B_l = density R^3 sqrt((2l+1)/4pi)/(l+3) sum |det|/2 r^l for l = 0 ... lmax, in the units of Q_lm / R^l, r and det
+/// B_l = |density| R^3 sqrt((2l+1)/4pi)/(l+3) sum |det|/2 r^l for l = 0 ... lmax, in the units of Q_lm / R^l, r and det
 /// taken after division by R: an a-priori bound of |Q_lm / R^l|.
 std::vector<double> degree_bound(const MomentProblem& problem);
 

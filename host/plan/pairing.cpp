@@ -48,6 +48,11 @@ std::vector<Neighbours> neighbours(std::span<const Face> faces, std::size_t vert
   return result;
 }
 
+// Two faces over the same three vertices share all corners, so there is no outer one.
+bool same_vertices(const Face& f, const Face& g) {
+  return std::is_permutation(f.begin(), f.end(), g.begin());
+}
+
 bool degenerate(const Face& f) {
   return f[0] == f[1] || f[1] == f[2] || f[2] == f[0];
 }
@@ -81,7 +86,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> pair_faces(std::span<const 
     std::ptrdiff_t fewest = 4;
     if (!degenerate(faces[f]))
       for (const std::uint32_t g : across[f])
-        if (usable(g) && free_neighbours(g) < fewest) {
+        if (usable(g) && !same_vertices(faces[f], faces[g]) && free_neighbours(g) < fewest) {
           fewest = free_neighbours(g);
           partner = g;
         }

@@ -23,11 +23,13 @@ DegreeErrors compare_with(const Coefficients& a, std::span<const double> bound, 
     const double limit = bound[std::size_t(l)];
     double scale = double(std::sqrt(square));
     if (l == 1 || scale < 1e-3 * limit) scale = limit;
-    const double error = difference == 0 ? 0.0 : double(std::sqrt(difference)) / scale;
+    // What is beyond the range of doubles beside the largest bound is no error.
+    const bool vanishes = difference == 0 || double(std::sqrt(difference)) <= 1e-280 * bound[0];
+    const double error = vanishes ? 0.0 : double(std::sqrt(difference)) / scale;
     errors.relative.push_back(error);
-    const double weighed = error / std::max(1.0, 0.01 * limit / scale);
-    if (difference != 0 && !(weighed <= errors.weighed)) errors.weighed = weighed;
-    if (!(error <= errors.worst)) {
+    const double weighed = vanishes ? 0.0 : error / std::max(1.0, 0.01 * limit / scale);
+    if (!std::isnan(errors.weighed) && !(weighed <= errors.weighed)) errors.weighed = weighed;
+    if (!std::isnan(errors.worst) && !(error <= errors.worst)) {
       errors.worst = error;
       errors.worst_degree = l;
     }

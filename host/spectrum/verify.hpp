@@ -35,6 +35,11 @@ struct Accuracy {
 /// The problem of a body's mass moments. It refers to the body.
 MomentProblem mass_problem(const Body& body, int lmax, double cut_off);
 
+/// Degrees 0 and 2 of `q` against the body's mass and Cartesian quadrupole tensor, which share no code with any path:
+/// Q_00 = M/sqrt(4 pi), Q_20 = sqrt(5/pi)/4 T_zz, Q_21 = -sqrt(5/24pi) (T_xz + i T_yz), Q_22 = sqrt(5/96pi) (T_xx - T_yy +
+/// 2i T_xy), T = integral of density (3 x x - r^2).
+Agreement compare_with_tensors(const Body& body, const Coefficients& q);
+
 /// Bound of the host bytes verify_moments() allocates beside what the backend needs for the same triangles.
 std::uint64_t verify_bytes(const MomentProblem& problem, const Backend& backend, Verify how);
 

@@ -48,6 +48,7 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const ProgramO
     dup2(sink, STDOUT_FILENO);
     dup2(err.ends[1], STDERR_FILENO);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    if (options.close_stderr) close(STDERR_FILENO);
     execv(argv[0], argv.data());
     _exit(127);
   }

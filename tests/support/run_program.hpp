@@ -15,8 +15,9 @@ struct ProgramRun {
 struct ProgramOptions {
   std::map<std::string, std::string> environment; ///< set on top of this process's
   std::string stdout_to;                          ///< a file instead of a pipe
-  double interrupt_after = 0;                     ///< seconds after which SIGINT is sent; 0: never
-  double interrupt_again = 0;                     ///< and once more
+  bool close_stderr = false;
+  double interrupt_after = 0; ///< seconds after which SIGINT is sent; 0: never
+  double interrupt_again = 0; ///< and once more
 };
 
 /// Runs the program with `arguments` to its end; kills it after five minutes.
