@@ -40,7 +40,7 @@ std::unique_ptr<Backend> open_backend(const Common& common, std::string* note) {
 
 std::string mesh_help() {
   std::string text = "An OFF file, `benchmark` (libigl's cow.off), or a built-in body:";
-  for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.name);
+  for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);
   return text;
 }
 
