@@ -44,10 +44,4 @@ private:
   std::byte* mapped_ = nullptr;
 };
 
-/// Elements as bytes, for Buffer::write and read.
-template <class T>
-std::span<const std::byte> bytes_of(std::span<const T> data) {
-  return std::as_bytes(data);
-}
-
 } // namespace cowgpu::engine

@@ -5,16 +5,9 @@
 #ifdef __cplusplus
 #include <cstdint>
 using uint = std::uint32_t;
-#define COWGPU_CONST constexpr
-namespace cowgpu::shaders {
-#else
-#define COWGPU_CONST const
 #endif
 
 // Specialization constant that sets the workgroup's width in every shader.
 #define COWGPU_LOCAL_SIZE_ID 0
 
-#ifdef __cplusplus
-} // namespace cowgpu::shaders
-#endif
 #endif

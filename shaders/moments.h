@@ -33,8 +33,8 @@ namespace cowgpu::shaders {
 
 struct MomentsPush {
   double start;     // rows start at this power of two
-  uint first_group;    // of the chunk that the pairs and the state are bound for
-  uint begin_group;    // this dispatch works on groups begin ... end-1, counted from the chunk's first
+  uint first_group; // of the chunk that the pairs and the state are bound for
+  uint begin_group; // this dispatch works on groups begin ... end-1, counted from the chunk's first
   uint end_group;
   uint first_degree;   // of the slice, 1 or one past the end of the slice before
   uint last_degree;    // of the slice

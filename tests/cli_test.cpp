@@ -277,11 +277,21 @@ TEST_CASE("a device without an end is refused as too large", "[cli]") {
 
 TEST_CASE("progress as JSON lines goes to standard error", "[cli]") {
   ProgramOptions options;
-  options.interrupt_after = 4;
+  options.interrupt_on = "fraction";
   const ProgramRun run =
       run_program({"expand", "builtin:sphere@7", "--lmax", "2000", "--device", "cpu", "--progress", "jsonl"}, options);
   CHECK_THAT(run.err, Contains("\"fraction\":") && Contains("\"seconds_left\":"));
+  CHECK(run.exit_code == 130);
   CHECK(run.out.empty());
+}
+
+TEST_CASE("an origin far from the body is no false alarm", "[cli]") {
+  for (const char* device : {"cpu", "auto"}) {
+    const ProgramRun run =
+        run_program({"expand", "builtin:box", "--origin", "1e3,0,0", "--lmax", "64", "--device", device});
+    INFO(run.out << run.err);
+    CHECK(run.exit_code == 0);
+  }
 }
 
 TEST_CASE("a dry run prints plan and memory and computes nothing", "[cli]") {

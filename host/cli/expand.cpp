@@ -1,5 +1,6 @@
 #include "host/cli/commands.hpp"
 
+#include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/mesh_source.hpp"
@@ -10,13 +11,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <chrono>
 #include <ctime>
 
 namespace cowgpu::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct Options {
   std::string mesh = "builtin:cow";
@@ -37,12 +35,11 @@ constexpr std::uint64_t large_json = std::uint64_t(50) << 20;
 class Stopwatch {
 public:
   double lap() {
-    const auto now = Clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
+    const double seconds = seconds_since(last_);
+    last_ = Clock::now();
     return seconds;
   }
-  double total() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  double total() const { return seconds_since(start_); }
 
 private:
   Clock::time_point start_ = Clock::now(), last_ = start_;
@@ -191,10 +188,12 @@ void run(const Options& options, Common& common) {
     write_screen(result, write_stdout);
   if (result.accuracy.how != Verify::none && !result.accuracy.passed()) {
     flush_stdout();
-    throw Error(Fault::check_failed,
-                fmt::format("the two paths differ by {:.1e} at degree {}, more than {:.1e}: do not trust "
-                            "these numbers; try --device cpu and `cowgpu validate`",
-                            result.accuracy.worst(), result.accuracy.worst_degree(), result.accuracy.bound));
+    const Agreement& worst = *result.accuracy.worst();
+    throw Error(
+        Fault::check_failed,
+        fmt::format("{} against {} is off by {:.1e}, more than {:.1e}: do not trust these numbers; try --device cpu "
+                    "and `cowgpu validate`",
+                    worst.path, worst.against, worst.errors.weighed, result.accuracy.bound));
   }
 }
 

@@ -1,12 +1,12 @@
 #include "host/cpu/moments.hpp"
 
+#include "host/clock.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/flush_denormals.hpp"
 #include "host/parallel.hpp"
 #include "host/plan/moments.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <new>
@@ -14,12 +14,6 @@
 
 namespace cowgpu::cpu {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 using Partial = hwy::AlignedFreeUniquePtr<double[]>;
 

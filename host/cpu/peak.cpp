@@ -3,12 +3,13 @@
 #include <hwy/foreach_target.h>
 // foreach_target must come first
 #include "host/cpu/peak.hpp"
+
+#include "host/clock.hpp"
 #include "host/parallel.hpp"
 
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <chrono>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
@@ -55,11 +56,11 @@ double peak(unsigned threads) {
   double best = 0;
   for (int run = 0; run < 6; ++run) {
     std::vector<double> sums(threads, 0.0), flops(threads, 0.0);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     parallel_for(threads, threads, [&](std::size_t task, unsigned) {
       flops[task] = HWY_DYNAMIC_DISPATCH(MultiplyAdds)(rounds, &sums[task]);
     });
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = seconds_since(start);
     double total = 0;
     for (unsigned t = 0; t < threads; ++t) total += sums[t] > 0 ? flops[t] : 0;
     best = std::max(best, total / seconds);

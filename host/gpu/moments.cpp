@@ -1,23 +1,13 @@
 #include "host/gpu/moments.hpp"
 
+#include "host/clock.hpp"
 #include "host/plan/moments.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
 namespace cowgpu::gpu {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-} // namespace
-
 engine::MomentsShape shape_from(const GpuOptions& options) {
   engine::MomentsShape shape;
   shape.levels = options.levels;

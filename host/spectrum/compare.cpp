@@ -27,7 +27,7 @@ DegreeErrors compare_with(const Coefficients& a, std::span<const double> bound, 
     const bool vanishes = difference == 0 || double(std::sqrt(difference)) <= 1e-280 * bound[0];
     const double error = vanishes ? 0.0 : double(std::sqrt(difference)) / scale;
     errors.relative.push_back(error);
-    const double weighed = vanishes ? 0.0 : error / std::max(1.0, 0.01 * limit / scale);
+    const double weighed = vanishes ? 0.0 : error / std::max(1.0, limit / (15 * scale));
     if (!std::isnan(errors.weighed) && !(weighed <= errors.weighed)) errors.weighed = weighed;
     if (!std::isnan(errors.worst) && !(error <= errors.worst)) {
       errors.worst = error;

@@ -28,31 +28,15 @@ std::vector<Face> sample_of(std::span<const Face> faces, std::uint64_t seed) {
 
 } // namespace
 
-namespace {
-
-// The agreement with the largest error; what is not a number counts as the largest of all.
-const Agreement* worst_of(const std::vector<Agreement>& agreements) {
+const Agreement* Accuracy::worst() const {
   const Agreement* worst = nullptr;
   for (const Agreement& a : agreements)
-    if (!worst || (!std::isnan(worst->errors.worst) && !(a.errors.worst <= worst->errors.worst))) worst = &a;
+    if (!worst || (!std::isnan(worst->errors.weighed) && !(a.errors.weighed <= worst->errors.weighed))) worst = &a;
   return worst;
 }
 
-} // namespace
-
-double Accuracy::worst() const {
-  const Agreement* worst = worst_of(agreements);
-  return worst ? worst->errors.worst : 0;
-}
-
-int Accuracy::worst_degree() const {
-  const Agreement* worst = worst_of(agreements);
-  return worst ? worst->errors.worst_degree : 0;
-}
-
 bool Accuracy::passed() const {
-  return std::all_of(agreements.begin(), agreements.end(),
-                     [&](const Agreement& a) { return a.errors.weighed <= bound; });
+  return worst() && worst()->errors.weighed <= bound;
 }
 
 MomentProblem mass_problem(const Body& body, int lmax, double cut_off) {

@@ -27,9 +27,9 @@ struct Accuracy {
   double bound = 0;       ///< what the paths must agree to, expected_error()
   std::vector<Agreement> agreements;
 
-  double worst() const;
-  int worst_degree() const;
-  bool passed() const; ///< DegreeErrors::weighed of every agreement within the bound; NaN fails
+  /// The agreement with the largest weighed error; null if nothing was compared. What is not a number counts as largest.
+  const Agreement* worst() const;
+  bool passed() const; ///< something was compared, and every weighed error is within the bound; NaN fails
 };
 
 /// The problem of a body's mass moments. It refers to the body.

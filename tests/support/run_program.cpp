@@ -60,6 +60,7 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const ProgramO
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   std::array<double, 3> signals = {options.interrupt_after, options.interrupt_again, 300};
   ProgramRun result;
+  bool interrupted = false;
   std::array<char, 65536> buffer{};
   while (out.ends[0] >= 0 || err.ends[0] >= 0) {
     for (std::size_t s = 0; s < signals.size(); ++s)
@@ -67,6 +68,10 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const ProgramO
         kill(child, s < 2 ? SIGINT : SIGKILL);
         signals[s] = 0;
       }
+    if (!interrupted && !options.interrupt_on.empty() && result.err.find(options.interrupt_on) != std::string::npos) {
+      kill(child, SIGINT);
+      interrupted = true;
+    }
     std::array<pollfd, 2> wait = {pollfd{out.ends[0], POLLIN, 0}, pollfd{err.ends[0], POLLIN, 0}};
     poll(wait.data(), wait.size(), 20);
     const auto drain = [&](Pipe& from, const pollfd& ready, std::string& to) {

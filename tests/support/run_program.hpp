@@ -16,6 +16,7 @@ struct ProgramOptions {
   std::map<std::string, std::string> environment; ///< set on top of this process's
   std::string stdout_to;                          ///< a file instead of a pipe
   bool close_stderr = false;
+  std::string interrupt_on;   ///< SIGINT once standard error holds this
   double interrupt_after = 0; ///< seconds after which SIGINT is sent; 0: never
   double interrupt_again = 0; ///< and once more
 };
