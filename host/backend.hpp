@@ -2,7 +2,9 @@
 #pragma once
 
 #include "host/coefficients.hpp"
+#include "host/kernel_time.hpp"
 #include "host/monitor.hpp"
+#include "host/sphere_transform.hpp"
 #include "host/types.hpp"
 
 #include <cstdint>
@@ -46,13 +48,6 @@ struct DeviceFacts {
   unsigned threads = 1;             ///< of the CPU path
 };
 
-/// Time one kernel took on a device, summed over its dispatches.
-struct KernelTime {
-  std::string kernel;
-  std::uint64_t dispatches = 0;
-  double seconds = 0;
-};
-
 /// What a verb did, beside its result.
 struct RunReport {
   double seconds = 0;              ///< wall time of the verb
@@ -82,6 +77,13 @@ public:
 
   /// Upper bound of the memory moments() allocates, its result included.
   virtual MemoryNeed moments_memory(const MomentProblem& problem) const = 0;
+
+  /// The verbs `analyse` and `synthesise` on a grid, to degree lmax <= grid.lmax: recurrence coefficients and start values
+  /// are made here. Throws Error(bad_argument, too_large, device_failed, device_lost).
+  virtual std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) = 0;
+
+  /// Upper bound of the memory a transform of so many fields allocates, beside its input and output: O(lmax^2 + points).
+  virtual MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const = 0;
 
   /// Measured multiply-add peak of double precision, in flops per second (a multiply-add counts two).
   virtual double measured_peak() = 0;

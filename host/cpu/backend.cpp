@@ -4,6 +4,7 @@
 #include "host/cpu/moments.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/cpu/peak.hpp"
+#include "host/cpu/sphere_transform.hpp"
 #include "host/parallel.hpp"
 
 #include <fmt/format.h>
@@ -40,6 +41,12 @@ public:
   }
   MemoryNeed moments_memory(const MomentProblem& problem) const override {
     return {cpu::moments_bytes(problem, threads_), 0};
+  }
+  std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) override {
+    return cpu::sphere_transform(grid, lmax, threads_);
+  }
+  MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
+    return cpu::sphere_transform_memory(grid, lmax, fields, threads_);
   }
   double measured_peak() override { return cpu::peak(threads_); }
 

@@ -7,6 +7,7 @@
 #include "host/gpu/environment.hpp"
 #include "host/gpu/errors.hpp"
 #include "host/gpu/moments.hpp"
+#include "host/gpu/sphere_transform.hpp"
 
 namespace cowgpu {
 namespace {
@@ -40,6 +41,14 @@ public:
 
   MemoryNeed moments_memory(const MomentProblem& problem) const override {
     return gpu::moments_memory(gpu_.facts(), shape_, problem);
+  }
+
+  std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) override {
+    return gpu::translated([&] { return gpu::sphere_transform(gpu_, grid, lmax); });
+  }
+
+  MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
+    return gpu::sphere_transform_memory(gpu_.facts(), grid, lmax, fields);
   }
 
   double measured_peak() override {
