@@ -122,7 +122,7 @@ std::vector<Real> cosines(int n) {
   std::vector<Real> c(std::size_t(n) + 1);
   for (int i = 0; i <= n; ++i) // from the nearest of pole and equator, so that zeros are zeros and signs are symmetric
     c[std::size_t(i)] = 4 * i <= n       ? std::cos(pi * i / n)
-                        : 4 * i <= 3 * n ? std::sin(pi * (n - 2 * i) / (2 * n))
+                        : 4 * i < 3 * n ? std::sin(pi * (n - 2 * i) / (2 * n))
                                          : -std::cos(pi * (n - i) / n);
   return c;
 }
