@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "host/cpu/moments_kernel.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target must come first
+#include "host/cpu/lanes-inl.hpp"
 #include "host/cpu/moments_kernel.hpp"
 
 #include <hwy/highway.h>
@@ -15,12 +16,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace cowgpu::cpu::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<double, 8>;
-using V = hn::Vec<D>;
-constexpr D d;
-constexpr std::size_t lanes = hn::MaxLanes(d);
 constexpr int levels = degrees_per_sweep;
 static_assert(levels == 4, "the kernel spells out four levels");
 
@@ -89,35 +85,6 @@ HWY_INLINE Column advance(const Directions& g, const Phase& f, const Column& bel
   out.tr = hn::Add(combine_re(g.ax, g.ay, g.az, same.tr, above.tr, above.ti, btr, bti), out.er);
   out.ti = hn::Add(combine_im(g.ax, g.ay, g.az, same.ti, above.tr, above.ti, btr, bti), out.ei);
   return out;
-}
-
-// Sums over the lanes of a[0] ... a[7], added to p[0] ... p[7].
-HWY_INLINE void add_lane_sums(const V* a, double* p) {
-#if HWY_TARGET == HWY_SCALAR
-  for (int i = 0; i < 2 * levels; ++i) p[i] += hn::GetLane(a[i]);
-#else
-  const auto add_pair = [](V x, V y)
-                            HWY_ATTR { return hn::Add(hn::InterleaveLower(d, x, y), hn::InterleaveUpper(d, x, y)); };
-  const V p0 = add_pair(a[0], a[1]), p1 = add_pair(a[2], a[3]), p2 = add_pair(a[4], a[5]), p3 = add_pair(a[6], a[7]);
-  const auto accumulate = [](V sum, double* to) HWY_ATTR { hn::Store(hn::Add(hn::Load(d, to), sum), d, to); };
-  if constexpr (lanes == 2) {
-    accumulate(p0, p);
-    accumulate(p1, p + 2);
-    accumulate(p2, p + 4);
-    accumulate(p3, p + 6);
-  } else {
-    const auto add_blocks = [](V x, V y) HWY_ATTR {
-      return hn::Add(hn::OddEvenBlocks(y, x), hn::SwapAdjacentBlocks(hn::OddEvenBlocks(x, y)));
-    };
-    const V q0 = add_blocks(p0, p1), q1 = add_blocks(p2, p3);
-    if constexpr (lanes == 4) {
-      accumulate(q0, p);
-      accumulate(q1, p + 4);
-    } else {
-      accumulate(hn::Add(hn::ConcatLowerLower(d, q1, q0), hn::ConcatUpperUpper(d, q1, q0)), p);
-    }
-  }
-#endif
 }
 
 // Three columns of each level's input; the column c of a level sits in slot c mod 3.

@@ -1,47 +1,203 @@
 #include "host/cpu/sphere_transform.hpp"
 
-#include "host/reference/sphere_transform.hpp"
+#include "host/clock.hpp"
+#include "host/cpu/legendre.hpp"
+#include "host/cpu/ring_fourier.hpp"
+#include "host/parallel.hpp"
+#include "host/plan/legendre.hpp"
+#include "host/thread_pool.hpp"
 
-#include <utility>
+#include <hwy/aligned_allocator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <vector>
 
 namespace cowgpu::cpu {
 namespace {
 
+constexpr int seed_segment = 8, seed_orders = 1;
+
+// Fields of one call are transformed in groups, each of which runs the recurrence once.
+struct FieldGroup {
+  int first, count;
+};
+std::vector<FieldGroup> groups_of(int fields) {
+  std::vector<FieldGroup> groups;
+  for (int first = 0; first < fields; first += most_fields_together)
+    groups.push_back({first, std::min(most_fields_together, fields - first)});
+  return groups;
+}
+
 class Transform final : public SphereTransform {
 public:
-  Transform(const SphereGrid& grid, int lmax) : SphereTransform(grid, lmax) {}
+  Transform(const SphereGrid& from, int degree, unsigned threads)
+      : SphereTransform(from, degree), plan_(plan::legendre(grid(), degree, threads)),
+        seeds_(plan::seeds(plan_, seed_orders, seed_segment, threads)), fourier_(grid().ring_length), pool_(threads),
+        steps_(plan::active_steps(plan_, seeds_)) {
+    for (unsigned t = 0; t < pool_.threads(); ++t) {
+      legendre_work_.emplace_back(plan_);
+      ring_work_.emplace_back(fourier_);
+    }
+  }
 
 private:
   void to_grid(int fields, std::span<const std::complex<double>> coefficients, std::span<double> values,
-               RingFactor factor, Monitor&, TransformReport&) override {
+               RingFactor factor, Monitor& monitor, TransformReport& report) override {
     const std::size_t count = SphereCoefficients::count(lmax()), points = grid().points();
-    for (std::size_t f = 0; f < std::size_t(fields); ++f) {
-      std::vector<reference::Pair<double>> a(count);
-      for (std::size_t i = 0; i < count; ++i)
-        a[i] = {coefficients[f * count + i].real(), coefficients[f * count + i].imag()};
-      const auto v = reference::synthesise<double>(grid(), lmax(), a, factor == RingFactor::weight);
-      std::copy(v.begin(), v.end(), values.begin() + std::ptrdiff_t(f * points));
+    Progress progress(fields, monitor);
+    for (const FieldGroup& group : groups_of(fields)) {
+      const SpectrumLayout layout = provide(group.count);
+      const auto first = std::size_t(group.first);
+      auto start = Clock::now();
+      pool_.run(std::size_t(layout.orders), [&](std::size_t m, unsigned thread) {
+        progress.task(thread, group, 0, m, std::size_t(layout.orders));
+        const std::size_t at = first * count + SphereCoefficients::index(lmax(), int(m), int(m));
+        legendre_synthesis(plan_, seeds_, int(m), group.count, &coefficients[at], count, legendre_work_[thread],
+                           &spectrum_[m * layout.row]);
+      });
+      report.legendre_seconds += seconds_since(start);
+      start = Clock::now();
+      const std::size_t tasks = std::size_t(layout.blocks) * std::size_t(group.count);
+      pool_.run(tasks, [&](std::size_t task, unsigned thread) {
+        progress.task(thread, group, 1, task, tasks);
+        const int block = int(task) / group.count, field = int(task) % group.count;
+        double* map = values.data() + (first + std::size_t(field)) * points;
+        RingTargets rings;
+        for (std::size_t i = 0; i < plan::block_pairs; ++i) {
+          const std::size_t pair = std::size_t(block) * plan::block_pairs + i;
+          rings.north[i] = ring(map, plan_.north[pair]);
+          rings.south[i] = ring(map, plan_.south[pair]);
+          rings.weight[i] = factor == RingFactor::weight ? plan_.weight[pair] : 1;
+        }
+        orders_to_rings(fourier_, rings, lmax(), &spectrum_[layout.at(0, field, block)], layout.row,
+                        ring_work_[thread]);
+      });
+      report.fourier_seconds += seconds_since(start);
     }
+    count_flops(fields, report);
   }
+
   void from_grid(int fields, std::span<const double> values, std::span<std::complex<double>> coefficients,
-                 RingFactor factor, Monitor&, TransformReport&) override {
+                 RingFactor factor, Monitor& monitor, TransformReport& report) override {
     const std::size_t count = SphereCoefficients::count(lmax()), points = grid().points();
-    for (std::size_t f = 0; f < std::size_t(fields); ++f) {
-      const auto a =
-          reference::analyse<double>(grid(), lmax(), values.subspan(f * points, points), factor == RingFactor::weight);
-      for (std::size_t i = 0; i < count; ++i) coefficients[f * count + i] = {a[i].re, a[i].im};
+    Progress progress(fields, monitor);
+    for (const FieldGroup& group : groups_of(fields)) {
+      const SpectrumLayout layout = provide(group.count);
+      const auto first = std::size_t(group.first);
+      auto start = Clock::now();
+      const std::size_t tasks = std::size_t(layout.blocks) * std::size_t(group.count);
+      pool_.run(tasks, [&](std::size_t task, unsigned thread) {
+        progress.task(thread, group, 0, task, tasks);
+        const int block = int(task) / group.count, field = int(task) % group.count;
+        const double* map = values.data() + (first + std::size_t(field)) * points;
+        RingBlock rings;
+        for (std::size_t i = 0; i < plan::block_pairs; ++i) {
+          const std::size_t pair = std::size_t(block) * plan::block_pairs + i;
+          rings.north[i] = ring(map, plan_.north[pair]);
+          rings.south[i] = ring(map, plan_.south[pair]);
+          rings.weight[i] = factor == RingFactor::weight ? plan_.weight[pair] : 1;
+          rings.x[i] = plan_.x[pair];
+        }
+        rings_to_orders(fourier_, rings, lmax(), &spectrum_[layout.at(0, field, block)], layout.row,
+                        ring_work_[thread]);
+      });
+      report.fourier_seconds += seconds_since(start);
+      start = Clock::now();
+      pool_.run(std::size_t(layout.orders), [&](std::size_t m, unsigned thread) {
+        progress.task(thread, group, 1, m, std::size_t(layout.orders));
+        const std::size_t at = first * count + SphereCoefficients::index(lmax(), int(m), int(m));
+        legendre_analysis(plan_, seeds_, int(m), group.count, &spectrum_[m * layout.row], legendre_work_[thread],
+                          &coefficients[at], count);
+      });
+      report.legendre_seconds += seconds_since(start);
     }
+    count_flops(fields, report);
   }
+
+  // Says how far the two stages of all groups are, from the caller's thread, and asks on every thread whether to stop.
+  class Progress {
+  public:
+    Progress(int fields, Monitor& monitor) : fields_(fields), monitor_(monitor) {}
+    void task(unsigned thread, const FieldGroup& group, int stage, std::size_t task, std::size_t tasks) {
+      check_stop(monitor_);
+      if (thread != 0) return;
+      const double part = (stage + double(task) / double(tasks)) / 2;
+      const double fraction = (group.first + part * group.count) / fields_;
+      if (fraction < said_ + 1.0 / 256) return;
+      said_ = fraction;
+      monitor_.progress("transform", fraction);
+    }
+
+  private:
+    int fields_;
+    Monitor& monitor_;
+    double said_ = 0; // by the caller's thread alone
+  };
+
+  template <class Value>
+  Value* ring(Value* map, int index) const {
+    return index < 0 ? nullptr : map + std::size_t(index) * std::size_t(grid().ring_length);
+  }
+
+  // Room between the stages for so many fields; kept for the calls to come.
+  SpectrumLayout provide(int fields) {
+    const SpectrumLayout layout(plan_, fields);
+    if (layout.size() > spectrum_size_) {
+      spectrum_.reset();
+      spectrum_size_ = 0;
+      spectrum_ = hwy::AllocateAligned<double>(layout.size());
+      if (!spectrum_) throw std::bad_alloc();
+      spectrum_size_ = layout.size();
+    }
+    return layout;
+  }
+
+  void count_flops(int fields, TransformReport& report) const {
+    for (const FieldGroup& group : groups_of(fields)) report.legendre_flops += steps_ * 2 * (2 + 4 * group.count);
+    const double n = grid().ring_length;
+    report.fourier_flops += 5 * n * std::log2(n) * plan_.pairs * fields;
+  }
+
+  plan::Legendre plan_;
+  plan::Seeds seeds_;
+  RingFourier fourier_;
+  ThreadPool pool_;
+  double steps_;
+  std::vector<LegendreWork> legendre_work_;
+  std::vector<RingWork> ring_work_;
+  hwy::AlignedFreeUniquePtr<double[]> spectrum_;
+  std::size_t spectrum_size_ = 0;
 };
 
 } // namespace
 
-std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax, unsigned) {
-  return std::make_unique<Transform>(grid, lmax);
+std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax, unsigned threads) {
+  return std::make_unique<Transform>(grid, lmax, threads);
 }
 
-MemoryNeed sphere_transform_memory(const SphereGrid&, int, int, unsigned) {
-  return {};
+MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields, unsigned threads) {
+  if (threads == 0) threads = all_threads();
+  const std::size_t orders = std::size_t(lmax) + 1, rings = std::size_t(grid.rings);
+  const std::size_t length = std::size_t(grid.ring_length);
+  plan::Legendre shape; // as far as sizes depend on it
+  shape.lmax = lmax;
+  shape.blocks = (grid.rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs;
+  const std::size_t pairs = std::size_t(shape.blocks) * plan::block_pairs;
+  std::size_t steps = 0;
+  for (int m = 0; m <= lmax; ++m) steps += std::size_t(shape.padded_steps(m));
+
+  const std::size_t of_grid = rings * (2 * sizeof(long double) + 2 * sizeof(double));
+  const std::size_t of_plan = pairs * (2 * sizeof(int) + 3 * sizeof(double) + sizeof(long double)) +
+                              (4 * steps + 2 * steps + 2 * orders) * sizeof(double) + 2 * (orders + 1) * 8;
+  const std::size_t of_seeds = orders * pairs * 2 * sizeof(double) + orders * std::size_t(shape.blocks) * 4;
+  const std::size_t of_planning = threads * pairs * 2 * sizeof(long double);
+  const std::size_t of_fourier = length * 3 * 2 * sizeof(double);
+  const std::size_t a_thread = LegendreWork::bytes(shape) + RingWork::most_bytes(grid.ring_length);
+  const std::size_t between = SpectrumLayout(shape, std::min(fields, most_fields_together)).size() * sizeof(double);
+  constexpr std::size_t others = 65536; // small objects, alignment
+  return {of_grid + of_plan + of_seeds + of_planning + of_fourier + threads * a_thread + between + others, 0};
 }
 
 } // namespace cowgpu::cpu
