@@ -18,6 +18,8 @@ std::string_view name(Fault fault) {
   case Fault::mesh_no_volume: return "mesh-no-volume";
   case Fault::mesh_edge_manifold: return "mesh-edge-manifold";
   case Fault::mesh_vertex_manifold: return "mesh-vertex-manifold";
+  case Fault::map_topology: return "map-topology";
+  case Fault::map_failed: return "map-failed";
   case Fault::mesh_range: return "mesh-range";
   case Fault::too_large: return "too-large";
   case Fault::no_loader: return "no-loader";

@@ -23,6 +23,8 @@ enum class Fault {
   mesh_no_volume,       ///< volume zero, or not to be told from zero
   mesh_edge_manifold,   ///< an edge with more than two faces
   mesh_vertex_manifold, ///< a vertex whose faces form more than one fan
+  map_topology,         ///< a surface that is not one sphere: several shells, or holes through it
+  map_failed,           ///< a map to the sphere that could not be made: a singular system, a vertex without a place
   mesh_range,           ///< coordinates too large or too small to compute with in double precision
   too_large,            ///< more memory than this machine has, or than a device offers
   no_loader,            ///< no Vulkan loader on this machine
