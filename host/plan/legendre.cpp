@@ -89,6 +89,13 @@ Legendre legendre(const SphereGrid& grid, int lmax, unsigned threads) {
   return plan;
 }
 
+Legendre recurrence(int lmax, unsigned threads) {
+  Legendre plan;
+  plan.lmax = lmax;
+  set_recurrence(plan, threads);
+  return plan;
+}
+
 double active_steps(const Legendre& plan, const Seeds& seeds) {
   double steps = 0;
   for (int m = 0; m <= plan.lmax; ++m) {
