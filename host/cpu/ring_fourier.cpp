@@ -22,8 +22,8 @@ HWY_BEFORE_NAMESPACE();
 namespace cowgpu::cpu::HWY_NAMESPACE {
 
 constexpr std::size_t pairs = pairs_of_block;
-constexpr std::size_t ahead =
-    8; // orders that are fetched before they are used: too far apart for the processor to foresee
+// Orders whose cells are fetched ahead of their use: they lie too far apart for the processor to foresee.
+constexpr std::size_t ahead = 8;
 
 // Transforms work.one; the result is there again.
 const double* run(const RingFourier& fourier, RingWork& work) {
