@@ -86,6 +86,7 @@ private:
       });
       report.fourier_seconds += seconds_since(start);
     }
+    progress.finish();
     count_flops(fields, report);
   }
 
@@ -123,6 +124,7 @@ private:
       });
       report.legendre_seconds += seconds_since(start);
     }
+    progress.finish();
     count_flops(fields, report);
   }
 
@@ -139,6 +141,7 @@ private:
       said_ = fraction;
       monitor_.progress("transform", fraction);
     }
+    void finish() { monitor_.progress("transform", 1); }
 
   private:
     int fields_;
