@@ -53,8 +53,8 @@ HWY_INLINE void store_some(V v, double* to, std::size_t count) {
 // a power of two share a few sets of the first-level cache.
 constexpr std::size_t stretch = 32; // points
 
-// Values of a block's rings `part` ... `part` + lanes - 1 to the real parts of a row (rings = north) or to the imaginary
-// ones (south, imaginary = lanes).
+// Points begin ... end - 1 of `lanes` rings to the real parts of a row, or, with the row moved on by `lanes` doubles, to
+// its imaginary parts.
 HWY_INLINE void gather(const double* const* rings, std::size_t begin, std::size_t end, double* row) {
   for (std::size_t j = begin; j < end; j += lanes) {
     const std::size_t count = std::min(lanes, end - j);
