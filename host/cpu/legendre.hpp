@@ -45,8 +45,8 @@ struct LegendreWork {
   hwy::AlignedFreeUniquePtr<double[]> chunk; ///< what has to stay in the first-level cache
 };
 
-/// One order m of `fields` fields, 1 to most_fields_together: from coefficients (of field f: coefficients[f * stride + l - m], l = m ... lmax) to cells
-/// [field][block]. All cells are written.
+/// One order m of `fields` fields, 1 to most_fields_together: from coefficients, a_lm of field f at
+/// coefficients[f * stride + l - m], l = m ... lmax, to cells [field][block]. All cells are written.
 void legendre_synthesis(const plan::Legendre& plan, const plan::Seeds& seeds, int m, int fields,
                         const std::complex<double>* coefficients, std::size_t stride, LegendreWork& work,
                         double* cells);

@@ -5,9 +5,11 @@
 #define HWY_TARGET_INCLUDE "host/cpu/ring_fourier.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target must come first
+#include "host/cpu/fourier_passes-inl.hpp"
 #include "host/cpu/lanes-inl.hpp"
 #include "host/cpu/ring_fourier.hpp"
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -20,173 +22,19 @@ HWY_BEFORE_NAMESPACE();
 namespace cowgpu::cpu::HWY_NAMESPACE {
 
 constexpr std::size_t pairs = pairs_of_block;
-constexpr std::size_t point = 2 * lanes; // doubles of one
+// Orders whose cells are fetched ahead of their use: they lie too far apart for the processor to foresee.
+constexpr std::size_t ahead = 8;
 
-struct Complex {
-  V re, im;
-};
-
-HWY_INLINE Complex load(const double* p) {
-  return {hn::Load(d, p), hn::Load(d, p + lanes)};
-}
-HWY_INLINE void store(const Complex& c, double* p) {
-  hn::Store(c.re, d, p);
-  hn::Store(c.im, d, p + lanes);
-}
-HWY_INLINE Complex add(const Complex& a, const Complex& b) {
-  return {hn::Add(a.re, b.re), hn::Add(a.im, b.im)};
-}
-HWY_INLINE Complex sub(const Complex& a, const Complex& b) {
-  return {hn::Sub(a.re, b.re), hn::Sub(a.im, b.im)};
-}
-// a - i b and a + i b.
-HWY_INLINE Complex sub_i(const Complex& a, const Complex& b) {
-  return {hn::Add(a.re, b.im), hn::Sub(a.im, b.re)};
-}
-HWY_INLINE Complex add_i(const Complex& a, const Complex& b) {
-  return {hn::Sub(a.re, b.im), hn::Add(a.im, b.re)};
-}
-HWY_INLINE Complex multiply(const Complex& a, const double* factor) {
-  const V c = hn::Set(d, factor[0]), s = hn::Set(d, factor[1]);
-  return {hn::NegMulAdd(a.im, s, hn::Mul(a.re, c)), hn::MulAdd(a.re, s, hn::Mul(a.im, c))};
-}
-// a + factor b.
-HWY_INLINE Complex add_scaled(const Complex& a, V factor, const Complex& b) {
-  return {hn::MulAdd(factor, b.re, a.re), hn::MulAdd(factor, b.im, a.im)};
-}
-
-HWY_INLINE void butterfly2(Complex* x) {
-  const Complex difference = sub(x[0], x[1]);
-  x[0] = add(x[0], x[1]);
-  x[1] = difference;
-}
-
-HWY_INLINE void butterfly4(Complex* x) {
-  const Complex a = add(x[0], x[2]), b = sub(x[0], x[2]), c = add(x[1], x[3]), e = sub(x[1], x[3]);
-  x[0] = add(a, c);
-  x[1] = sub_i(b, e);
-  x[2] = sub(a, c);
-  x[3] = add_i(b, e);
-}
-
-HWY_INLINE void butterfly8(Complex* x) {
-  Complex even[4] = {x[0], x[2], x[4], x[6]}, odd[4] = {x[1], x[3], x[5], x[7]};
-  butterfly4(even);
-  butterfly4(odd);
-  const V half = hn::Set(d, std::numbers::sqrt2 / 2);
-  const Complex turned1 = {hn::Add(odd[1].re, odd[1].im), hn::Sub(odd[1].im, odd[1].re)};
-  const Complex turned3 = {hn::Sub(odd[3].im, odd[3].re),
-                           hn::Add(odd[3].re, odd[3].im)}; // with the sign of the imaginary part changed
-  x[0] = add(even[0], odd[0]);
-  x[4] = sub(even[0], odd[0]);
-  x[1] = add_scaled(even[1], half, turned1);
-  x[5] = {hn::NegMulAdd(half, turned1.re, even[1].re), hn::NegMulAdd(half, turned1.im, even[1].im)};
-  x[2] = sub_i(even[2], odd[2]);
-  x[6] = add_i(even[2], odd[2]);
-  x[3] = {hn::MulAdd(half, turned3.re, even[3].re), hn::NegMulAdd(half, turned3.im, even[3].im)};
-  x[7] = {hn::NegMulAdd(half, turned3.re, even[3].re), hn::MulAdd(half, turned3.im, even[3].im)};
-}
-
-HWY_INLINE void butterfly3(Complex* x) {
-  const Complex sum = add(x[1], x[2]), difference = sub(x[1], x[2]);
-  const Complex middle = add_scaled(x[0], hn::Set(d, -0.5), sum);
-  const V s = hn::Set(d, std::numbers::sqrt3 / 2);
-  const Complex turned = {hn::Mul(s, difference.re), hn::Mul(s, difference.im)};
-  x[0] = add(x[0], sum);
-  x[1] = sub_i(middle, turned);
-  x[2] = add_i(middle, turned);
-}
-
-HWY_INLINE void butterfly5(Complex* x) {
-  constexpr double c1 = 0.30901699437494742410, c2 = -0.80901699437494742410; // cos(2 pi / 5), cos(4 pi / 5)
-  constexpr double s1 = 0.95105651629515357212, s2 = 0.58778525229247312917;
-  const Complex sum1 = add(x[1], x[4]), sum2 = add(x[2], x[3]), dif1 = sub(x[1], x[4]), dif2 = sub(x[2], x[3]);
-  const V vc1 = hn::Set(d, c1), vc2 = hn::Set(d, c2), vs1 = hn::Set(d, s1), vs2 = hn::Set(d, s2);
-  const Complex a1 = add_scaled(add_scaled(x[0], vc1, sum1), vc2, sum2);
-  const Complex a2 = add_scaled(add_scaled(x[0], vc2, sum1), vc1, sum2);
-  const Complex b1 = {hn::MulAdd(vs2, dif2.re, hn::Mul(vs1, dif1.re)), hn::MulAdd(vs2, dif2.im, hn::Mul(vs1, dif1.im))};
-  const Complex b2 = {hn::NegMulAdd(vs1, dif2.re, hn::Mul(vs2, dif1.re)),
-                      hn::NegMulAdd(vs1, dif2.im, hn::Mul(vs2, dif1.im))};
-  x[0] = add(x[0], add(sum1, sum2));
-  x[1] = sub_i(a1, b1);
-  x[4] = add_i(a1, b1);
-  x[2] = sub_i(a2, b2);
-  x[3] = add_i(a2, b2);
-}
-
-template <int Radix>
-HWY_INLINE void butterfly(Complex* x) {
-  if constexpr (Radix == 2) butterfly2(x);
-  if constexpr (Radix == 3) butterfly3(x);
-  if constexpr (Radix == 4) butterfly4(x);
-  if constexpr (Radix == 5) butterfly5(x);
-  if constexpr (Radix == 8) butterfly8(x);
-}
-
-template <int Radix>
-void run_pass(const RingFourier::Pass& pass, const double* from, double* to) {
-  const std::size_t length = std::size_t(pass.length / Radix), stride = std::size_t(pass.stride);
-  const double* twiddle = pass.twiddle.data();
-  for (std::size_t p = 0; p < length; ++p, twiddle += 2 * (Radix - 1))
-    for (std::size_t q = 0; q < stride; ++q) {
-      Complex x[Radix];
-      for (std::size_t k = 0; k < Radix; ++k) x[k] = load(from + (q + stride * (p + k * length)) * point);
-      butterfly<Radix>(x);
-      double* out = to + (q + stride * Radix * p) * point;
-      store(x[0], out);
-      for (std::size_t k = 1; k < Radix; ++k)
-        store(p == 0 ? x[k] : multiply(x[k], twiddle + 2 * (k - 1)), out + k * stride * point);
-    }
-}
-
-// A prime of any size: with s_j = x_j + x_{r-j}, d_j = x_j - x_{r-j}, 0 < j < r/2, outputs k and r - k are A - i B and
-// A + i B, A = x_0 + sum s_j cos(2 pi j k / r), B = sum d_j sin(2 pi j k / r).
-void run_large_prime(const RingFourier::Pass& pass, const double* from, double* to, double* sums) {
-  const std::size_t radix = std::size_t(pass.radix), half = radix / 2;
-  const std::size_t length = std::size_t(pass.length) / radix, stride = std::size_t(pass.stride);
-  double* differences = sums + half * point;
-  for (std::size_t p = 0; p < length; ++p) {
-    const double* twiddle = &pass.twiddle[p * 2 * (radix - 1)];
-    for (std::size_t q = 0; q < stride; ++q) {
-      const auto input = [&](std::size_t k) HWY_ATTR { return load(from + (q + stride * (p + k * length)) * point); };
-      double* out = to + (q + stride * radix * p) * point;
-      const Complex first = input(0);
-      Complex total = first;
-      for (std::size_t j = 1; j <= half; ++j) {
-        const Complex a = input(j), b = input(radix - j), sum = add(a, b);
-        store(sum, sums + (j - 1) * point);
-        store(sub(a, b), differences + (j - 1) * point);
-        total = add(total, sum);
-      }
-      store(total, out);
-      for (std::size_t k = 1; k <= half; ++k) {
-        Complex a = first, b = {hn::Zero(d), hn::Zero(d)};
-        for (std::size_t j = 0, at = k; j < half; ++j, at = at + k < radix ? at + k : at + k - radix) {
-          a = add_scaled(a, hn::Set(d, pass.circle[2 * at]), load(sums + j * point));
-          b = add_scaled(b, hn::Set(d, pass.circle[2 * at + 1]), load(differences + j * point));
-        }
-        store(multiply(sub_i(a, b), twiddle + 2 * (k - 1)), out + k * stride * point);
-        store(multiply(add_i(a, b), twiddle + 2 * (radix - k - 1)), out + (radix - k) * stride * point);
-      }
-    }
-  }
-}
-
-// Transforms work.one, or leaves the result in work.other; returns where it is.
-double* run(const RingFourier& fourier, RingWork& work) {
-  double *from = work.one.get(), *to = work.other.get();
+// Transforms work.one; the result is there again.
+const double* run(const RingFourier& fourier, RingWork& work) {
   for (const RingFourier::Pass& pass : fourier.passes) {
-    switch (pass.radix) {
-    case 2: run_pass<2>(pass, from, to); break;
-    case 3: run_pass<3>(pass, from, to); break;
-    case 4: run_pass<4>(pass, from, to); break;
-    case 5: run_pass<5>(pass, from, to); break;
-    case 8: run_pass<8>(pass, from, to); break;
-    default: run_large_prime(pass, from, to, work.radix.get());
-    }
-    std::swap(from, to);
+    const double* from = work.one.get();
+    double* to = work.other.get();
+    if (!with_radix(pass.radix, [&](auto radix) HWY_ATTR { run_pass<decltype(radix)::value>(pass, from, to); }))
+      run_large_prime(pass, from, to, work.radix.get());
+    std::swap(work.one, work.other);
   }
-  return from;
+  return work.one.get();
 }
 
 // The first `count` of `lanes` doubles; the others are 0.
@@ -201,82 +49,118 @@ HWY_INLINE void store_some(V v, double* to, std::size_t count) {
   std::copy_n(values, count, to);
 }
 
+// Rings are read and written some lines at a time, and the northern ones apart from the southern: rings whose distance is
+// a power of two share a few sets of the first-level cache.
+constexpr std::size_t stretch = 32; // points
+
+// Points begin ... end - 1 of `lanes` rings to the real parts of a row, or, with the row moved on by `lanes` doubles, to
+// its imaginary parts.
+HWY_INLINE void gather(const double* const* rings, std::size_t begin, std::size_t end, double* row) {
+  for (std::size_t j = begin; j < end; j += lanes) {
+    const std::size_t count = std::min(lanes, end - j);
+    V v[lanes];
+    for (std::size_t i = 0; i < lanes; ++i)
+      v[i] = rings[i] == nullptr ? hn::Zero(d)
+             : count == lanes    ? hn::LoadU(d, rings[i] + j)
+                                 : load_some(rings[i] + j, count);
+    transpose(v);
+    for (std::size_t i = 0; i < lanes; ++i) hn::Store(v[i], d, row + (j + i) * point);
+  }
+}
+
+HWY_INLINE void scatter(const double* row, std::size_t begin, std::size_t end, double* const* rings) {
+  for (std::size_t j = begin; j < end; j += lanes) {
+    const std::size_t count = std::min(lanes, end - j);
+    V v[lanes];
+    for (std::size_t i = 0; i < lanes; ++i) v[i] = hn::Load(d, row + (j + i) * point);
+    transpose(v);
+    for (std::size_t i = 0; i < lanes; ++i)
+      if (rings[i] != nullptr) {
+        if (count == lanes)
+          hn::StoreU(v[i], d, rings[i] + j);
+        else
+          store_some(v[i], rings[i] + j, count);
+      }
+  }
+}
+
+// Of z = north + i south: north_m = (z_m + conj z_{n-m}) / 2, south_m = (z_m - conj z_{n-m}) / 2i.
+struct OrderSink {
+  double* cells;
+  std::size_t stride;
+  V weight, weight_x; // half of them
+
+  HWY_INLINE void put(std::size_t m, const Complex& z, const Complex& mirror) const {
+    double* to = cells + m * stride;
+    const V north_re = hn::Add(z.re, mirror.re), north_im = hn::Sub(z.im, mirror.im);
+    const V south_re = hn::Add(z.im, mirror.im), south_im = hn::Sub(mirror.re, z.re);
+    hn::Store(hn::Mul(weight, hn::Add(north_re, south_re)), d, to);
+    hn::Store(hn::Mul(weight, hn::Add(north_im, south_im)), d, to + pairs);
+    hn::Store(hn::Mul(weight_x, hn::Sub(north_re, south_re)), d, to + 2 * pairs);
+    hn::Store(hn::Mul(weight_x, hn::Sub(north_im, south_im)), d, to + 3 * pairs);
+  }
+};
+
+// Point m of the spectrum is north_m + i south_m, point n - m conj north_m + i conj south_m; real and imaginary parts
+// are exchanged for the inverse transform.
+struct OrderSource {
+  const double* cells;
+  std::size_t stride;
+  V weight;
+
+  HWY_INLINE void get(std::size_t m, Complex& z, Complex& mirror) const {
+    const double* from = cells + m * stride;
+    for (std::size_t i = 0; i < 4; ++i) hwy::Prefetch(from + ahead * stride + i * pairs);
+    const V even_re = hn::Mul(weight, hn::Load(d, from)), odd_re = hn::Mul(weight, hn::Load(d, from + 2 * pairs));
+    const V even_im = hn::Mul(weight, hn::Load(d, from + pairs));
+    const V odd_im = hn::Mul(weight, hn::Load(d, from + 3 * pairs));
+    const V north_re = hn::Add(even_re, odd_re), south_re = hn::Sub(even_re, odd_re);
+    const V north_im = hn::Add(even_im, odd_im), south_im = hn::Sub(even_im, odd_im);
+    mirror = {hn::Sub(south_re, north_im), hn::Add(north_re, south_im)};
+    z = {hn::Add(north_im, south_re), hn::Sub(north_re, south_im)};
+  }
+  // Order 0, whose imaginary parts do not count.
+  HWY_INLINE Complex first() const {
+    const V even = hn::Mul(weight, hn::Load(d, cells)), odd = hn::Mul(weight, hn::Load(d, cells + 2 * pairs));
+    return {hn::Sub(even, odd), hn::Add(even, odd)};
+  }
+};
+
 void RingsToOrders(const RingFourier& fourier, const RingBlock& block, int lmax, double* cells, std::size_t stride,
                    RingWork& work) {
-  const std::size_t n = std::size_t(fourier.length);
+  const std::size_t n = std::size_t(fourier.length), orders = std::size_t(lmax) + 1;
   for (std::size_t part = 0; part < pairs; part += lanes) {
-    for (std::size_t j = 0; j < n; j += lanes) {
-      const std::size_t count = std::min(lanes, n - j);
-      V north[lanes], south[lanes];
-      const auto load_ring = [&](const double* ring) HWY_ATTR {
-        return ring == nullptr ? hn::Zero(d) : count == lanes ? hn::LoadU(d, ring + j) : load_some(ring + j, count);
-      };
-      for (std::size_t i = 0; i < lanes; ++i) {
-        north[i] = load_ring(block.north[part + i]);
-        south[i] = load_ring(block.south[part + i]);
-      }
-      transpose(north);
-      transpose(south);
-      for (std::size_t i = 0; i < count; ++i) store({north[i], south[i]}, work.one.get() + (j + i) * point);
+    double* values = work.one.get();
+    for (std::size_t j = 0; j < n; j += stretch) {
+      gather(&block.north[part], j, std::min(n, j + stretch), values);
+      gather(&block.south[part], j, std::min(n, j + stretch), values + lanes);
     }
     const double* row = run(fourier, work);
-    // Of z = north + i south: north_m = (z_m + conj z_{n-m}) / 2, south_m = (z_m - conj z_{n-m}) / 2i.
     const V weight = hn::Mul(hn::Set(d, 0.5), hn::LoadU(d, &block.weight[part]));
-    const V weight_x = hn::Mul(weight, hn::LoadU(d, &block.x[part]));
-    double* to = cells + part;
-    for (std::size_t m = 0; m <= std::size_t(lmax); ++m, to += stride) {
-      const Complex z = load(row + m * point), mirror = load(row + (m == 0 ? 0 : n - m) * point);
-      const V north_re = hn::Add(z.re, mirror.re), north_im = hn::Sub(z.im, mirror.im);
-      const V south_re = hn::Add(z.im, mirror.im), south_im = hn::Sub(mirror.re, z.re);
-      hn::Store(hn::Mul(weight, hn::Add(north_re, south_re)), d, to);
-      hn::Store(hn::Mul(weight, hn::Add(north_im, south_im)), d, to + pairs);
-      hn::Store(hn::Mul(weight_x, hn::Sub(north_re, south_re)), d, to + 2 * pairs);
-      hn::Store(hn::Mul(weight_x, hn::Sub(north_im, south_im)), d, to + 3 * pairs);
-    }
+    const OrderSink sink = {cells + part, stride, weight, hn::Mul(weight, hn::LoadU(d, &block.x[part]))};
+    for (std::size_t m = 0; m < orders; ++m)
+      sink.put(m, load(row + m * point), load(row + (m == 0 ? 0 : n - m) * point));
   }
 }
 
 void OrdersToRings(const RingFourier& fourier, const RingTargets& block, int lmax, const double* cells,
                    std::size_t stride, RingWork& work) {
-  const std::size_t n = std::size_t(fourier.length);
+  const std::size_t n = std::size_t(fourier.length), orders = std::size_t(lmax) + 1;
   for (std::size_t part = 0; part < pairs; part += lanes) {
-    double* row = work.one.get();
-    const V weight = hn::LoadU(d, &block.weight[part]);
-    const double* from = cells + part;
-    for (std::size_t m = 0; m <= std::size_t(lmax); ++m, from += stride) {
-      const V even_re = hn::Mul(weight, hn::Load(d, from)), odd_re = hn::Mul(weight, hn::Load(d, from + 2 * pairs));
-      V even_im = hn::Mul(weight, hn::Load(d, from + pairs)), odd_im = hn::Mul(weight, hn::Load(d, from + 3 * pairs));
-      if (m == 0) even_im = odd_im = hn::Zero(d);
-      const V north_re = hn::Add(even_re, odd_re), south_re = hn::Sub(even_re, odd_re);
-      const V north_im = hn::Add(even_im, odd_im), south_im = hn::Sub(even_im, odd_im);
-      // conj north_m + i conj south_m at n - m, north_m + i south_m at m; parts exchanged for the inverse transform.
-      if (m > 0) store({hn::Sub(south_re, north_im), hn::Add(north_re, south_im)}, row + (n - m) * point);
-      store({hn::Add(north_im, south_re), hn::Sub(north_re, south_im)}, row + m * point);
+    const OrderSource source = {cells + part, stride, hn::LoadU(d, &block.weight[part])};
+    double* spectrum = work.one.get();
+    store(source.first(), spectrum);
+    for (std::size_t m = 1; m < orders; ++m) {
+      Complex z, mirror;
+      source.get(m, z, mirror);
+      store(z, spectrum + m * point);
+      store(mirror, spectrum + (n - m) * point);
     }
-    for (std::size_t m = std::size_t(lmax) + 1; m + std::size_t(lmax) < n; ++m)
-      store({hn::Zero(d), hn::Zero(d)}, row + m * point);
-    row = run(fourier, work);
-    for (std::size_t j = 0; j < n; j += lanes) {
-      const std::size_t count = std::min(lanes, n - j);
-      V north[lanes], south[lanes];
-      for (std::size_t i = 0; i < lanes; ++i) {
-        const Complex z = load(row + std::min(j + i, n - 1) * point);
-        north[i] = z.im;
-        south[i] = z.re;
-      }
-      transpose(north);
-      transpose(south);
-      const auto store_ring = [&](V values, double* ring) HWY_ATTR {
-        if (ring == nullptr) return;
-        if (count == lanes)
-          hn::StoreU(values, d, ring + j);
-        else
-          store_some(values, ring + j, count);
-      };
-      for (std::size_t i = 0; i < lanes; ++i) {
-        store_ring(north[i], block.north[part + i]);
-        store_ring(south[i], block.south[part + i]);
-      }
+    for (std::size_t m = orders; m + orders <= n; ++m) store({hn::Zero(d), hn::Zero(d)}, spectrum + m * point);
+    const double* row = run(fourier, work);
+    for (std::size_t j = 0; j < n; j += stretch) {
+      scatter(row + lanes, j, std::min(n, j + stretch), &block.north[part]);
+      scatter(row, j, std::min(n, j + stretch), &block.south[part]);
     }
   }
 }
@@ -349,9 +233,9 @@ RingFourier::RingFourier(int length_) : length(length_) {
 
 namespace {
 
-// A row of `points` points, however many lanes there are.
+// A row of `points` points, however many lanes there are, with room for a last group of points that is not full.
 constexpr std::size_t row_doubles(int points) {
-  return std::size_t(points) * 2 * pairs_of_block;
+  return (std::size_t(points) + pairs_of_block) * 2 * pairs_of_block;
 }
 
 } // namespace
@@ -359,7 +243,7 @@ constexpr std::size_t row_doubles(int points) {
 RingWork::RingWork(const RingFourier& fourier)
     : one(hwy::AllocateAligned<double>(row_doubles(fourier.length))),
       other(hwy::AllocateAligned<double>(row_doubles(fourier.length))),
-      radix(hwy::AllocateAligned<double>(row_doubles(std::max(fourier.largest_prime, 1)))) {
+      radix(hwy::AllocateAligned<double>(row_doubles(fourier.largest_prime))) {
   if (!one || !other || !radix) throw std::bad_alloc();
 }
 

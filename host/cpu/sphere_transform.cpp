@@ -8,9 +8,11 @@
 #include "host/thread_pool.hpp"
 
 #include <hwy/aligned_allocator.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <new>
 #include <vector>
 
@@ -28,6 +30,14 @@ std::vector<FieldGroup> groups_of(int fields) {
   for (int first = 0; first < fields; first += most_fields_together)
     groups.push_back({first, std::min(most_fields_together, fields - first)});
   return groups;
+}
+
+// Asks for large pages, because the stages walk through the memory between them in steps longer than a small one.
+void prefer_large_pages(double* begin, std::size_t doubles) {
+  constexpr std::uintptr_t page = 4096;
+  const std::uintptr_t first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) / page * page;
+  const std::uintptr_t last = reinterpret_cast<std::uintptr_t>(begin + doubles) / page * page;
+  if (last > first) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
 }
 
 class Transform final : public SphereTransform {
@@ -76,6 +86,7 @@ private:
       });
       report.fourier_seconds += seconds_since(start);
     }
+    progress.finish();
     count_flops(fields, report);
   }
 
@@ -113,6 +124,7 @@ private:
       });
       report.legendre_seconds += seconds_since(start);
     }
+    progress.finish();
     count_flops(fields, report);
   }
 
@@ -129,6 +141,7 @@ private:
       said_ = fraction;
       monitor_.progress("transform", fraction);
     }
+    void finish() { monitor_.progress("transform", 1); }
 
   private:
     int fields_;
@@ -150,6 +163,7 @@ private:
       spectrum_ = hwy::AllocateAligned<double>(layout.size());
       if (!spectrum_) throw std::bad_alloc();
       spectrum_size_ = layout.size();
+      prefer_large_pages(spectrum_.get(), spectrum_size_);
     }
     return layout;
   }
@@ -196,7 +210,7 @@ MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields,
   const std::size_t of_fourier = length * 3 * 2 * sizeof(double);
   const std::size_t a_thread = LegendreWork::bytes(shape) + RingWork::most_bytes(grid.ring_length);
   const std::size_t between = SpectrumLayout(shape, std::min(fields, most_fields_together)).size() * sizeof(double);
-  constexpr std::size_t others = 65536; // small objects, alignment
+  constexpr std::size_t others = std::size_t(2) << 20; // a large page, small objects, alignment
   return {of_grid + of_plan + of_seeds + of_planning + of_fourier + threads * a_thread + between + others, 0};
 }
 
