@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks what `cowgpu expand --json` prints against the schema. Arguments: the program, the schema."""
+"""Checks what `--json` prints against the schemas. Arguments: the program, the folder of schemas."""
 import json
 import os
 import subprocess
@@ -12,15 +12,35 @@ except ImportError:
     print("SKIPPED: python3-jsonschema is not installed")
     sys.exit(0)
 
-program, schema_path = sys.argv[1:]
-with open(schema_path, encoding="utf-8") as file:
-    schema = json.load(file)
-jsonschema.Draft7Validator.check_schema(schema)
+program, folder_of_schemas = sys.argv[1:]
+
+
+def load_schema(name):
+    with open(os.path.join(folder_of_schemas, f"cowgpu.{name}.v1.json"), encoding="utf-8") as schema_file:
+        loaded = json.load(schema_file)
+    jsonschema.Draft7Validator.check_schema(loaded)
+    return loaded
+
+
+def output_of(*arguments):
+    run = subprocess.run([program, *arguments], capture_output=True, text=True, check=True)
+    return json.loads(run.stdout)
 
 
 def expand(*arguments):
-    run = subprocess.run([program, "expand", *arguments], capture_output=True, text=True, check=True)
-    return json.loads(run.stdout)
+    return output_of("expand", *arguments)
+
+
+def refuses(schema, document, why):
+    """A broken document must not pass, or the checks say nothing."""
+    try:
+        jsonschema.validate(document, schema)
+    except jsonschema.ValidationError:
+        return
+    sys.exit(f"the schema accepts {why}")
+
+
+schema = load_schema("result")
 
 
 for arguments in (
@@ -39,13 +59,8 @@ for arguments in (
     want = result["mesh"]["volume"] * mass["density"] / (4 * 3.141592653589793) ** 0.5
     assert abs(q00 - want) < 1e-14 * abs(want), "Q_00 is the mass over sqrt(4 pi)"
 
-# A broken document must not pass, or the check above says nothing.
 result["mesh"]["sha256"] = "milk"
-try:
-    jsonschema.validate(result, schema)
-    sys.exit("the schema accepts a hash that is none")
-except jsonschema.ValidationError:
-    pass
+refuses(schema, result, "a hash that is none")
 
 with tempfile.TemporaryDirectory() as folder:
     path = os.path.join(folder, "cow.json")
@@ -60,4 +75,37 @@ with tempfile.TemporaryDirectory() as folder:
         lines = [line.rstrip("\n") for line in file if not line.startswith("#")]
     assert lines[0] == "l,m,re,im"
     assert [[int(a), int(b), float(c), float(d)] for a, b, c, d in (line.split(",") for line in lines[1:])] == rows
-print("4 documents and 2 files passed")
+
+roundtrip = load_schema("roundtrip")
+for arguments in (["--lmax", "0"], ["--lmax", "12", "--fields", "3", "--grid", "dh", "--seed", "9", "--runs", "2"]):
+    trip = output_of("transform", "roundtrip", "--device", "cpu", "--json", *arguments)
+    jsonschema.validate(trip, roundtrip)
+    assert trip["passed"] is True and trip["max_error"] <= trip["bound"]
+    assert trip["rms_error"] <= trip["max_error"] * 10
+assert (trip["lmax"], trip["fields"], trip["seed"], trip["runs"]) == (12, 3, 9, 2)
+assert trip["grid"] == {"kind": "dh", "rings": 26, "ring_length": 52}
+trip["max_error"] = "small"
+refuses(roundtrip, trip, "an error in words")
+
+transform, spectrum = load_schema("transform"), load_schema("spectrum")
+with tempfile.TemporaryDirectory() as folder:
+    moments, grid, back = (os.path.join(folder, name) for name in ("moments.csv", "grid.nc", "back.nc"))
+    expand("builtin:box:1,2,3", "--lmax", "6", "--device", "cpu", "--json", "-o", moments)
+    there = output_of("transform", "synthesise", moments, grid, "--grid", "cc", "--device", "cpu", "--json")
+    here = output_of("transform", "analyse", grid, back, "--normalisation", "4pi", "--device", "cpu", "--json")
+    for report in (there, here):
+        jsonschema.validate(report, transform)
+    assert (there["direction"], here["direction"]) == ("synthesis", "analysis")
+    assert here["normalisation"] == "4pi" and here["grid"]["kind"] == "cc" and here["fields"] == ["mass"]
+    first, second = (output_of("spectrum", path, "--json") for path in (moments, back))
+    for report in (first, second):
+        jsonschema.validate(report, spectrum)
+        assert len(report["fields"][0]["power"]) == report["lmax"] + 1 == 7
+    total = first["fields"][0]["total"]
+    for a, b in zip(first["fields"][0]["power"], second["fields"][0]["power"]):
+        assert abs(a - b) <= 1e-14 * total, "power survives the way over a grid and another convention"
+    here["direction"] = "sideways"
+    refuses(transform, here, "a direction that is none")
+    first["fields"][0]["power"][0] = -1
+    refuses(spectrum, first, "a negative power")
+print("11 documents and 2 files passed")

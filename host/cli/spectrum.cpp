@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
+#include "host/io/shown.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/power.hpp"
 
@@ -60,7 +61,7 @@ struct Scale {
 
 void write_column(const Column& column, const char* symbol, const char* sum) {
   const Scale scale(column.power);
-  write_stdout(fmt::format("\n{}: {} {:.15g}\n", column.name, sum, total(column.power)));
+  write_stdout(fmt::format("\n{}: {} {:.15g}\n", shown(column.name), sum, total(column.power)));
   write_stdout(fmt::format("  {:>4}  {:>22}  {:>12}  log10 from 1e{:+03d} to 1e{:+03d}\n", "l", symbol,
                            fmt::format("{}/(2l+1)", symbol), scale.low, scale.high));
   for (std::size_t l = 0; l < column.power.size(); ++l) {

@@ -160,6 +160,7 @@ CoefficientFile read_netcdf_coefficients(const std::filesystem::path& path) {
   if (fields.size() > std::size_t(most_fields))
     throw Error(Fault::too_large,
                 fmt::format("{}: {} fields; at most {} are possible", netcdf.name, fields.size(), most_fields));
+  sort_fields(fields);
   const std::uint64_t n = netcdf.dimensions[fields[0]->dimensions[0]].length;
   if (n < 1 || n > largest_file_degree + 1 || n != netcdf.dimensions[fields[0]->dimensions[1]].length)
     throw Error(Fault::file_format,
@@ -188,7 +189,7 @@ CoefficientFile read_netcdf_coefficients(const std::filesystem::path& path) {
           real.sine[real.index(int(f), int(j), int(i) + 1)] = value;
       }
     const NetcdfAttribute* title = attribute(v.attributes, "title");
-    file.names.push_back(title ? shown(title->text) : "");
+    file.names.push_back(title ? title->text : "");
   }
   file.coefficients = complex_of(real, netcdf.name);
   file.convention = real.convention;
@@ -231,6 +232,7 @@ void write_netcdf_coefficients(const RealCoefficients& real, const std::vector<s
     out.attribute(id, "normalization", pyshtools_name(real.convention.normalisation));
     out.attribute(id, "csphase", std::int64_t(real.convention.phase == Phase::condon_shortley ? -1 : 1));
     fields.push_back(id);
+    if (real.fields > 1) out.attribute(id, "field", std::int64_t(fields.size()));
   }
   std::vector<double> row(n);
   for (std::size_t i = 0; i < n; ++i) row[i] = double(i);

@@ -6,7 +6,7 @@
 //   double      coeffs(degree, order): C_lm at [l][m] for m <= l, S_lm at [m - 1][l] for m >= 1; several fields: coeffs_1,
 //               coeffs_2 ...; with the attributes title (the field's name, or empty), description (program and version),
 //               normalization "ortho" | "4pi" | "schmidt" | "unnorm", csphase (integer): -1 with the Condon-Shortley
-//               phase, 1 without
+//               phase, 1 without; of several fields each has the integer attribute field, 1, 2 ...
 // CSV: lines "# lmax 8", "# normalisation orthonormal", "# phase cs", then the names l,m,C,S (several fields:
 //   l,m,C_1,S_1,C_2,S_2 ...), then a row for each l and m >= 0, sorted by l, then m.
 //

@@ -197,9 +197,10 @@ const std::string& text_of(const NetcdfFile& netcdf, const char* key) {
 const NetcdfVariable& coordinate(const NetcdfFile& netcdf, const char* key) {
   const NetcdfVariable* v = netcdf.variable(key);
   if (!v || !v->read || v->dimensions.size() != 1 || netcdf.dimensions[v->dimensions[0]].name != key)
-    throw Error(Fault::file_format,
-                fmt::format("{}: there is no coordinate variable {} of its own dimension: a grid has lat(lat) and lon(lon)",
-                            netcdf.name, key));
+    throw Error(
+        Fault::file_format,
+        fmt::format("{}: there is no coordinate variable {} of its own dimension: a grid has lat(lat) and lon(lon)",
+                    netcdf.name, key));
   const NetcdfAttribute* units = attribute(v->attributes, "units");
   if (units && (!units->is_text || !units->text.starts_with("degree")))
     damaged(fmt::format("{}: variable {}", netcdf.name, key),
@@ -234,8 +235,9 @@ GridFile read_netcdf_grid(const std::filesystem::path& path, std::optional<GridK
                                                   "first, for example with ncpdq -U",
                                                   netcdf.name, shown(v.name)));
     fields.push_back(&v);
-    raw.names.push_back(v.name);
   }
+  sort_fields(fields);
+  for (const NetcdfVariable* v : fields) raw.names.push_back(v->name);
   if (fields.empty())
     throw Error(Fault::file_format,
                 fmt::format("{}: there is no variable with the dimensions (lat, lon)", netcdf.name));
@@ -303,8 +305,10 @@ void write_netcdf_grid(const GridFile& grid, AtomicFile& file) {
   out.attribute(lon, "long_name", "longitude");
   out.attribute(lon, "units", "degrees_east");
   std::vector<int> fields;
-  for (const std::string& field : field_names(grid.names, grid.fields(), "value"))
+  for (const std::string& field : field_names(grid.names, grid.fields(), "value")) {
     fields.push_back(out.variable(field, NetcdfWriter::Type::real, dimensions));
+    if (grid.fields() > 1) out.attribute(fields.back(), "field", std::int64_t(fields.size()));
+  }
   out.attribute(NetcdfWriter::global, "title", "Field on the sphere");
   out.attribute(NetcdfWriter::global, "source", fmt::format("cowgpu {}", version));
   out.attribute(NetcdfWriter::global, "grid", name(g.kind));

@@ -4,7 +4,8 @@
 //   dimensions  lat, lon
 //   double      lat(lat)   degrees_north, from north to south as SphereGrid::latitude_degrees
 //   double      lon(lon)   degrees_east, from 0 as SphereGrid::longitude_degrees
-//   double      value(lat, lon); several fields: value_1, value_2 ..., or the names they were read under
+//   double      value(lat, lon); several fields: value_1, value_2 ..., or the names they were read under,
+//               each with the integer attribute field, 1, 2 ...
 //   global      grid "gl" | "cc" | "dh" | "dh1"; lmax (integer, at most the grid's); normalisation "orthonormal" | "4pi" |
 //               "schmidt" | "unnormalised" and phase "cs" | "none" (the convention of the coefficients the field came
 //               from; values do not depend on it); title; source (program and version)

@@ -47,6 +47,10 @@ struct NetcdfFile {
 /// The attribute of that name, or null.
 const NetcdfAttribute* attribute(const std::vector<NetcdfAttribute>& list, std::string_view name);
 
+/// Variables in the order of their attribute `field` (1, 2 ...), those without one after them: files built in memory lose the
+/// order in which variables were made.
+void sort_fields(std::vector<const NetcdfVariable*>& variables);
+
 /// Reads a file of any netCDF format (classic, 64-bit offset and data, netCDF-4). Damaged files make the netCDF and HDF5
 /// libraries crash, hang or ask for absurd memory, so they work in a process of their own with limits on time and memory;
 /// what comes out is checked before anything is allocated for it. Names of files are never taken for addresses on the net.

@@ -296,6 +296,15 @@ const NetcdfVariable* NetcdfFile::variable(std::string_view variable_name) const
   return nullptr;
 }
 
+void sort_fields(std::vector<const NetcdfVariable*>& variables) {
+  const auto place = [](const NetcdfVariable* v) {
+    const NetcdfAttribute* a = attribute(v->attributes, "field");
+    return a && a->number >= 1 ? a->number : std::numeric_limits<double>::infinity(); // NaN is no place
+  };
+  std::stable_sort(variables.begin(), variables.end(),
+                   [&](const NetcdfVariable* a, const NetcdfVariable* b) { return place(a) < place(b); });
+}
+
 NetcdfFile read_netcdf(const std::filesystem::path& path) {
   std::string bytes = read_file(path);
   if (!bytes.starts_with("\x89HDF\r\n\x1a\n") && !bytes.starts_with("CDF\x01") && !bytes.starts_with("CDF\x02") &&
