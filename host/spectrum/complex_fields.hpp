@@ -23,7 +23,7 @@ struct ComplexCoefficients {
       : lmax(lmax_), fields(fields_), values(std::size_t(fields_) * count(lmax_)) {}
 
   /// Where (l, m) stands within a field, -l <= m <= l <= lmax.
-  static constexpr std::size_t index(int l, int m) { return std::size_t(l * (l + 1) + m); }
+  static constexpr std::size_t index(int l, int m) { return std::size_t(l) * std::size_t(l) + std::size_t(l + m); }
   /// Coefficients of a field: (lmax + 1)^2.
   static constexpr std::size_t count(int lmax) { return std::size_t(lmax + 1) * std::size_t(lmax + 1); }
 
@@ -44,8 +44,9 @@ ComplexCoefficients join(const SphereCoefficients& parts);
 std::vector<std::complex<double>> synthesise(SphereTransform& transform, const ComplexCoefficients& coefficients,
                                              Monitor& monitor);
 
-/// Coefficients to degree transform.lmax(), exact for fields of at most that degree. `values` are [field][ring][longitude];
-/// their number must be a multiple of the grid's points. Throws what SphereTransform::analyse() throws.
+/// Coefficients to degree transform.lmax(), exact for fields of at most that degree. `values` are
+/// [field][ring][longitude]; their number must be a multiple of the grid's points. Throws what
+/// SphereTransform::analyse() throws.
 ComplexCoefficients analyse(SphereTransform& transform, const std::vector<std::complex<double>>& values,
                             Monitor& monitor);
 

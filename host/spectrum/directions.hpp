@@ -37,9 +37,9 @@ struct DirectionValues {
 /// host/spectrum/polar_cap.hpp takes over. On a pole only m = 0 counts, d_phi is 0 and d_theta is the derivative along
 /// the meridian phi (the fields X and Y of host/spectrum/derivatives.hpp: no division by sin theta).
 ///
-/// Against 80-bit arithmetic values are within 2.5e-14 sqrt(lmax) of the field's root mean square to degree 1024 (5e-12
-/// at 4096, on the equator), derivatives within lmax times that. What comes out at a direction does not depend on the
-/// other directions nor on the number of threads.
+/// Against 80-bit arithmetic values are within 1e-14 sqrt(lmax) of the field's root mean square, within 16 / lmax of the
+/// equator 1e-12 at degree 1024 and 5e-12 at 4096; derivatives within lmax times that. What comes out at a direction does
+/// not depend on the other directions nor on the number of threads.
 ///
 /// Time per direction O(lmax^2); d_theta counts as two fields more. Memory O(lmax^2): 12 (lmax + 17)^2 bytes, and
 /// 8 (lmax + 17)^2 + 1072 (lmax + 1) for each field, three times that with derivatives.

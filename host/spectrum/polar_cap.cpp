@@ -43,7 +43,7 @@ void PolarCap::sum(int m, long double cosine, long double sine, std::complex<dou
   double r = 1, d = 0, sign = 1;
   for (int l = m; l <= lmax_; ++l, sign *= odd_sign) {
     for (std::size_t f = 0; f < field_.size(); ++f) sums[f] += sign * r * field_[f][at + std::size_t(l - m)];
-    d = ((l - m) * d - (2 * l + 1) * (u * r)) * reciprocal_[std::size_t(l + m + 1)];
+    d = ((l - m) * d - (2 * l + 1) * (u * r)) * reciprocal_[std::size_t(l) + std::size_t(m) + 1];
     r += d;
   }
   for (std::size_t f = 0; f < field_.size(); ++f) sums[f] *= power;

@@ -1,8 +1,8 @@
 // Sums of associated Legendre functions next to the poles, where the common recurrences lose l^2 times the rounding.
 //
-// P_lm = N_lm sin^m(theta) R_{l-m}, N_lm = (-1)^m sqrt((2l+1)/4pi (l+m)!/(l-m)!) / (2^m m!), R Gegenbauer's polynomials for
-// m + 1/2, 1 at the pole. With u = 1 - cos theta they follow by their differences (their three-term recurrence, DLMF
-// 18.9.1, divided by their values at 1; for m = 0 the form of Reinsch), without cancellation:
+// P_lm = N_lm sin^m(theta) R_{l-m}, N_lm = (-1)^m sqrt((2l+1)/4pi (l+m)!/(l-m)!) / (2^m m!), with R Gegenbauer's
+// polynomials for m + 1/2 over their values at 1. With u = 1 - |cos theta| they follow by their differences (their
+// three-term recurrence, DLMF 18.9, over the values at 1; for m = 0 the form of Reinsch), without cancellation:
 //   D_{n+1} = ((l-m) D_n - (2l+1) u R_n) / (l+m+1),  R_{n+1} = R_n + D_{n+1},  n = l - m,  R_0 = 1, D_0 = 0.
 #pragma once
 

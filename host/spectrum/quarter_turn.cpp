@@ -22,49 +22,87 @@ using Row = QuarterTurn::Row;
 constexpr D d;
 constexpr std::size_t width = hn::MaxLanes(d);
 
-// Runs n rows of consecutive orders from degree `begin` to before `end`. Lanes are counted where `live` is 1, not where
-// it is 0. `live` is for n = 1 only.
-template <int n, bool masked>
-void run(const QuarterTurn::Tables& t, int block, Row* rows, int begin, int end, const double* live) {
+// Advances a row by one degree.
+HWY_INLINE void advance(V step, V factor, V& previous, V& current) {
+  const V next = hn::MulSub(hn::Mul(step, factor), current, previous);
+  previous = current;
+  current = next;
+}
+
+// Runs one row from degree `begin` to before `end`. Lanes are counted where `live` is 1, not where it is 0.
+void run(const QuarterTurn::Tables& t, int block, Row& row, int begin, int end, const double* live) {
   constexpr std::size_t lanes = QuarterTurn::lanes;
+  for (std::size_t i = 0; i < lanes; i += width) {
+    const double* factor = t.row(t.factor.get(), block, begin) + i;
+    const double* a[2] = {t.row(t.even.get(), block, begin) + i, t.row(t.odd.get(), block, begin) + i};
+    V previous = hn::LoadU(d, row.previous.data() + i), current = hn::LoadU(d, row.current.data() + i);
+    const V keep = hn::LoadU(d, live + i);
+    for (int l = begin; l < end; ++l) {
+      const std::size_t at = std::size_t(l - begin) * lanes;
+      double* sum = row.sums + std::size_t(l) * lanes + i;
+      const V value = hn::Mul(keep, current), packed = hn::Load(d, a[(l + row.m) % 2] + at);
+      hn::Store(hn::MulAdd(value, packed, hn::Load(d, sum)), d, sum);
+      advance(hn::Set(d, row.step[l]), hn::Load(d, factor + at), previous, current);
+    }
+    hn::StoreU(previous, d, row.previous.data() + i);
+    hn::StoreU(current, d, row.current.data() + i);
+  }
+}
+
+// Adds to sum[4][2] the sums over the even and over the odd lanes of each of four vectors; `i` is their first lane.
+HWY_INLINE void add_lanes(const V* v, [[maybe_unused]] std::size_t i, double* sum) {
+  if constexpr (width == 8) {
+#if HWY_TARGET != HWY_SCALAR
+    const V x = hn::Add(hn::ConcatLowerLower(d, v[2], v[0]), hn::ConcatUpperUpper(d, v[2], v[0]));
+    const V y = hn::Add(hn::ConcatLowerLower(d, v[3], v[1]), hn::ConcatUpperUpper(d, v[3], v[1]));
+    const V all =
+        hn::Add(hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y), x), hn::OddEvenBlocks(y, hn::SwapAdjacentBlocks(x)));
+    hn::Store(hn::Add(hn::Load(d, sum), all), d, sum);
+  } else if constexpr (width == 4) {
+    for (std::size_t j = 0; j < 4; j += 2) {
+      const V both = hn::Add(hn::ConcatLowerLower(d, v[j + 1], v[j]), hn::ConcatUpperUpper(d, v[j + 1], v[j]));
+      hn::Store(hn::Add(hn::Load(d, sum + 2 * j), both), d, sum + 2 * j);
+    }
+  } else if constexpr (width == 2) {
+    for (std::size_t j = 0; j < 4; ++j) hn::Store(hn::Add(hn::Load(d, sum + 2 * j), v[j]), d, sum + 2 * j);
+  } else {
+#endif
+    for (std::size_t j = 0; j < 4; ++j) sum[2 * j + i % 2] += hn::GetLane(v[j]);
+  }
+}
+
+// Runs four rows of consecutive orders from degree `begin` to the last. sums[l][4][2]: over even and odd lanes.
+void run_group(const QuarterTurn::Tables& t, int block, Row* rows, int begin, double* sums) {
+  constexpr std::size_t lanes = QuarterTurn::lanes;
+  constexpr int n = QuarterTurn::group;
+  static_assert(n == 4, "add_lanes spells out four vectors");
   for (std::size_t i = 0; i < lanes; i += width) {
     const double* factor = t.row(t.factor.get(), block, begin) + i;
     const double* same = t.row(t.even.get(), block, begin) + i;
     const double* other = t.row(t.odd.get(), block, begin) + i;
     if ((begin + rows[0].m) % 2) std::swap(same, other);
     V previous[n], current[n];
-    const double* step[n];
-    double* sums[n];
     for (int j = 0; j < n; ++j) {
       previous[j] = hn::LoadU(d, rows[j].previous.data() + i);
       current[j] = hn::LoadU(d, rows[j].current.data() + i);
-      step[j] = rows[j].step + begin;
-      sums[j] = rows[j].sums + std::size_t(begin) * lanes + i;
     }
-    [[maybe_unused]] const V keep = masked ? hn::LoadU(d, live + i) : hn::Zero(d);
-    const auto advance = [&](std::size_t l, const double* first, const double* second) HWY_ATTR {
-      const V f = hn::Load(d, factor + l * lanes);
-      const V a[2] = {hn::Load(d, first + l * lanes), hn::Load(d, second + l * lanes)};
+    const double* step[n] = {rows[0].step, rows[1].step, rows[2].step, rows[3].step};
+    const auto one_degree = [&](int l, const double* first, const double* second) HWY_ATTR {
+      const std::size_t at = std::size_t(l - begin) * lanes;
+      const V f = hn::Load(d, factor + at), a[2] = {hn::Load(d, first + at), hn::Load(d, second + at)};
+      V products[n];
       for (int j = 0; j < n; ++j) {
-        double* sum = sums[j] + l * lanes;
-        const V value = masked ? hn::Mul(keep, current[j]) : current[j];
-        hn::Store(hn::MulAdd(value, a[j % 2], hn::Load(d, sum)), d, sum);
-        const V next = hn::MulSub(hn::Mul(hn::Set(d, step[j][l]), f), current[j], previous[j]);
-        previous[j] = current[j];
-        current[j] = next;
+        products[j] = hn::Mul(current[j], a[j % 2]);
+        advance(hn::Set(d, step[j][l]), f, previous[j], current[j]);
       }
+      add_lanes(products, i, sums + std::size_t(l) * 2 * n);
     };
-    const auto count = std::size_t(end - begin);
-    std::size_t l = 0;
-    for (; l + 2 <= count; l += 2) {
-      advance(l, same, other);
-      advance(l + 1, other, same);
+    int l = begin;
+    for (; l < t.lmax; l += 2) {
+      one_degree(l, same, other);
+      one_degree(l + 1, other, same);
     }
-    if (l < count) advance(l, same, other);
-    for (int j = 0; j < n; ++j) {
-      hn::StoreU(previous[j], d, rows[j].previous.data() + i);
-      hn::StoreU(current[j], d, rows[j].current.data() + i);
-    }
+    if (l == t.lmax) one_degree(l, same, other);
   }
 }
 
@@ -99,7 +137,7 @@ int run_up(const QuarterTurn::Tables& t, int block, Row& row) {
     }
     if (all_live && !more) break;
     const int end = more ? l + 1 : std::min(l + 8, t.lmax + 1);
-    run<1, true>(t, block, &row, l, end, live);
+    run(t, block, row, l, end, live);
     l = end;
     for (std::size_t i = 0; i < QuarterTurn::lanes; ++i)
       if (row.scale[i] < 0 && std::fabs(row.current[i]) > QuarterTurn::rescale_above) {
@@ -111,20 +149,28 @@ int run_up(const QuarterTurn::Tables& t, int block, Row& row) {
   return l;
 }
 
-void turn(const QuarterTurn::Tables& t, Row* rows, int count) {
-  for (int block = 0; block < t.blocks; ++block) {
-    std::array<int, QuarterTurn::group> reached{};
-    int together = 0;
-    for (int j = 0; j < count; ++j) {
-      reached[std::size_t(j)] = run_up(t, block, rows[j]);
-      together = std::max(together, reached[std::size_t(j)]);
-    }
-    if (count < QuarterTurn::group) together = t.lmax + 1;
-    for (int j = 0; j < count; ++j)
-      if (reached[std::size_t(j)] < together)
-        run<1, false>(t, block, rows + j, reached[std::size_t(j)], together, nullptr);
-    if (together <= t.lmax) run<QuarterTurn::group, false>(t, block, rows, together, t.lmax + 1, nullptr);
+// Four rows at most: m = m_0, m_0 + 1, ...
+void turn_rows(const QuarterTurn::Tables& t, int block, Row* rows, int count, double* sums) {
+  HWY_ALIGN static constexpr double all[QuarterTurn::lanes] = {1, 1, 1, 1, 1, 1, 1, 1};
+  std::array<int, QuarterTurn::group> reached{};
+  int together = 0;
+  for (int j = 0; j < count; ++j) {
+    reached[std::size_t(j)] = run_up(t, block, rows[j]);
+    together = std::max(together, reached[std::size_t(j)]);
   }
+  if (count < QuarterTurn::group) together = t.lmax + 1;
+  for (int j = 0; j < count; ++j)
+    if (reached[std::size_t(j)] < together) run(t, block, rows[j], reached[std::size_t(j)], together, all);
+  if (together <= t.lmax) run_group(t, block, rows, together, sums);
+}
+
+// All rows of a task block by block, so that what a block reads stays in the cache.
+void turn(const QuarterTurn::Tables& t, Row* rows, int count, double* group_sums) {
+  const std::size_t stride = std::size_t(t.lmax + 1) * 2 * QuarterTurn::group;
+  for (int block = 0; block < t.blocks; ++block)
+    for (int first = 0, g = 0; first < count; first += QuarterTurn::group, ++g)
+      turn_rows(t, block, rows + first, std::min(QuarterTurn::group, count - first),
+                group_sums + std::size_t(g) * stride);
 }
 
 } // namespace cowgpu::HWY_NAMESPACE
@@ -157,13 +203,14 @@ private:
 };
 
 struct Workspace {
-  hwy::AlignedFreeUniquePtr<double[]> sums;
+  hwy::AlignedFreeUniquePtr<double[]> sums, group_sums;
   std::vector<double> step, out, start;
   std::vector<int> start_scale;
 
   explicit Workspace(int lmax) {
-    const auto n = std::size_t(lmax + 1), all = n * QuarterTurn::group;
+    const auto all = std::size_t(lmax + 1) * QuarterTurn::task_orders;
     sums = hwy::AllocateAligned<double>(all * QuarterTurn::lanes);
+    group_sums = hwy::AllocateAligned<double>(all * 2);
     step.resize(all);
     out.resize(all);
     start.resize(all);
@@ -278,26 +325,30 @@ void QuarterTurn::apply(std::span<std::complex<double>> coefficients, Monitor& m
     }
   };
 
-  const std::size_t tasks = std::size_t(lmax) / group + 1;
+  const std::size_t tasks = std::size_t(lmax) / task_orders + 1;
   const unsigned threads = threads_ ? threads_ : all_threads();
   std::vector<Workspace> spaces;
   for (unsigned i = 0; i < std::min<std::size_t>(threads, tasks); ++i) spaces.emplace_back(lmax);
   std::atomic<std::size_t> finished{0};
   parallel_for(threads, tasks, [&](std::size_t task, unsigned thread) {
     check_stop(monitor);
-    std::array<Row, group> rows;
-    const int first = int(task) * group, count = std::min<int>(group, lmax + 1 - first);
+    Workspace& space = spaces[thread];
+    std::array<Row, task_orders> rows;
+    const int first = int(task) * task_orders, count = std::min<int>(task_orders, lmax + 1 - first);
+    std::fill_n(space.group_sums.get(), stride * task_orders * 2, 0.0);
     for (int j = 0; j < count; ++j) {
       rows[std::size_t(j)].m = first + j;
-      set_row(rows[std::size_t(j)], spaces[thread], std::size_t(j));
+      set_row(rows[std::size_t(j)], space, std::size_t(j));
     }
-    HWY_DYNAMIC_DISPATCH(turn)(tables_, rows.data(), count);
+    HWY_DYNAMIC_DISPATCH(turn)(tables_, rows.data(), count, space.group_sums.get());
     for (int j = 0; j < count; ++j) {
       const Row& row = rows[std::size_t(j)];
-      const double* out = spaces[thread].out.data() + std::size_t(j) * stride;
+      const double* out = space.out.data() + std::size_t(j) * stride;
+      const double* group_sums = space.group_sums.get() + std::size_t(j / group) * stride * 2 * group;
       for (int l = row.m; l <= lmax; ++l) {
         const double* s = row.sums + std::ptrdiff_t(l) * lanes;
-        double even = (s[0] + s[2]) + (s[4] + s[6]), odd = (s[1] + s[3]) + (s[5] + s[7]);
+        const double* more = group_sums + (l * group + j % group) * 2;
+        double even = more[0] + ((s[0] + s[2]) + (s[4] + s[6])), odd = more[1] + ((s[1] + s[3]) + (s[5] + s[7]));
         if ((l + row.m) % 2) std::swap(even, odd);
         coefficients[SphereCoefficients::index(lmax, l, row.m)] = {out[l] * even, row.m == 0 ? 0 : out[l] * odd};
       }

@@ -8,9 +8,9 @@
 
 namespace cowgpu {
 
-/// The rotation R = R_z(alpha) R_y(beta) R_z(gamma), radians, about fixed axes, the rightmost first; R_z(t) turns x towards
-/// y, R_y(t) turns z towards x. Any real angles. An angle that is a multiple of pi / 2 rounded to double counts as that
-/// multiple exactly.
+/// The rotation R = R_z(alpha) R_y(beta) R_z(gamma), radians, about fixed axes, the rightmost first; R_z(t) turns x
+/// towards y, R_y(t) turns z towards x. Any angles up to 1e6. An angle that is a multiple of pi / 2 rounded to double
+/// counts as that multiple exactly.
 struct EulerAngles {
   double alpha = 0, beta = 0, gamma = 0;
 
@@ -34,7 +34,8 @@ EulerAngles euler_angles(const Eigen::Matrix3d& rotation);
 ///
 /// R_y(beta) = R_z(pi/2) R_y(pi/2) R_z(beta + pi) R_y(pi/2) R_z(pi/2), so that two turns by 90 degrees about y
 /// (host/spectrum/quarter_turn.hpp) and factors of modulus one serve all angles: the error does not depend on beta, where
-/// a recurrence at small beta loses l^2 times the rounding, and d(pi/2) costs half of d(beta), having a symmetry more.
+/// a recurrence at small beta loses digits with l, and d(pi/2) costs half of d(beta), having a symmetry more. Turning
+/// there and back gives random coefficients back to 9e-15 of the largest at degree 1024 and 1.3e-14 at 4096.
 /// Multiples of 90 degrees take none of them or one: turns about z and half turns only move and negate numbers.
 ///
 /// Time O(lmax^3), memory beside input and result that of one QuarterTurn, O(lmax^2). The same bits for any number of
