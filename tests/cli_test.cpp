@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-using namespace cowgpu::tests;
+using namespace cowgpu::test;
 using Catch::Contains;
 using Catch::StartsWith;
 

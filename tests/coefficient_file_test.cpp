@@ -13,7 +13,7 @@
 #include <limits>
 
 using namespace cowgpu;
-using namespace cowgpu::tests;
+using namespace cowgpu::test;
 using Catch::Contains;
 using Catch::StartsWith;
 
@@ -32,7 +32,7 @@ void write(const CoefficientFile& coefficients, const std::string& path) {
   file.commit();
 }
 
-double largest_difference(const SphereCoefficients& a, const SphereCoefficients& b) {
+double largest_relative_difference(const SphereCoefficients& a, const SphereCoefficients& b) {
   REQUIRE(a.values.size() == b.values.size());
   double worst = 0;
   for (std::size_t i = 0; i < a.values.size(); ++i)
@@ -213,7 +213,7 @@ TEST_CASE("coefficients read back from netCDF and CSV in every convention", "[co
             CHECK(back.convention == file.convention);
             CHECK(back.coefficients.fields == fields);
             CHECK(back.names.size() == std::size_t(fields));
-            CHECK(largest_difference(file.coefficients, back.coefficients) <= 1e-15);
+            CHECK(largest_relative_difference(file.coefficients, back.coefficients) <= 1e-15);
           }
 }
 

@@ -1,6 +1,7 @@
 // Fields at arbitrary directions against 80-bit sums, from pole to pole.
 #include "host/error.hpp"
 #include "host/spectrum/directions.hpp"
+#include "host/spectrum/roundtrip.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/sphere_fields.hpp"
 

@@ -11,7 +11,7 @@
 #include <limits>
 
 using namespace cowgpu;
-using namespace cowgpu::tests;
+using namespace cowgpu::test;
 using Catch::Contains;
 using Catch::StartsWith;
 

@@ -1,4 +1,5 @@
 #include "host/error.hpp"
+#include "host/spectrum/roundtrip.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/compare_transforms.hpp"
 
@@ -32,7 +33,7 @@ double inner(const std::vector<double>& f, const std::vector<double>& g) {
 
 double round_trip(Backend& backend, int lmax, int fields, GridKind kind = GridKind::gauss_legendre) {
   const auto transform = backend.sphere_transform(make_grid(kind, lmax), lmax);
-  const SphereCoefficients a = random_coefficients(lmax, fields);
+  const SphereCoefficients a = random_coefficients(lmax, fields, 1);
   const SphereCoefficients b = analyse(*transform, fields, synthesise(*transform, a));
   return relative_error(b.values, a.values);
 }
@@ -102,7 +103,7 @@ TEST_CASE("adjoints are adjoint", "[transform]") {
         for (const int fields : {1, 3}) {
           const SphereGrid grid = make_grid(kind, lmax);
           const auto transform = backend.sphere_transform(grid, lmax);
-          const SphereCoefficients a = random_coefficients(lmax, fields);
+          const SphereCoefficients a = random_coefficients(lmax, fields, 1);
           const auto g = random_values(std::size_t(fields) * grid.points());
           const auto s = synthesise(*transform, a), wa = analyse_adjoint(*transform, a);
           const auto c = synthesise_adjoint(*transform, fields, g), b = analyse(*transform, fields, g);
@@ -120,7 +121,7 @@ TEST_CASE("nothing above lmax leaks into the degrees below", "[transform]") {
     for (const GridKind kind : kinds) {
       const int high = 100, low = 60;
       const SphereGrid grid = make_grid(kind, high);
-      SphereCoefficients a = random_coefficients(high, 1);
+      SphereCoefficients a = random_coefficients(high, 1, 1);
       for (int m = 0; m <= low; ++m)
         for (int l = m; l <= low; ++l) a.at(0, l, m) = 0;
       const auto f = synthesise(*backend.sphere_transform(grid, high), a);
@@ -164,7 +165,7 @@ TEST_CASE("power is kept: Parseval's theorem", "[transform]") {
   Paths paths;
   paths.each([&](Backend& backend) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, 120);
-    const SphereCoefficients a = random_coefficients(60, 1);
+    const SphereCoefficients a = random_coefficients(60, 1, 1);
     const auto f = synthesise(*backend.sphere_transform(grid, 60), a); // f^2 has degree 120
     long double integral = 0;
     for (int i = 0; i < grid.rings; ++i)
@@ -183,7 +184,7 @@ TEST_CASE("a field does not depend on the fields beside it, nor on imaginary par
     INFO(backend.facts().name);
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, 45);
     const auto transform = backend.sphere_transform(grid, 45);
-    const SphereCoefficients all = random_coefficients(45, 7);
+    const SphereCoefficients all = random_coefficients(45, 7, 1);
     const auto together = synthesise(*transform, all);
     for (int f = 0; f < 7; ++f) {
       SphereCoefficients one(45, 1);
@@ -200,8 +201,8 @@ TEST_CASE("transforms repeat bit for bit, and on any number of threads", "[trans
   const auto run = [](Backend& backend) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, 130);
     const auto transform = backend.sphere_transform(grid, 130);
-    const auto f = synthesise(*transform, random_coefficients(130, 3));
-    const auto again = synthesise(*transform, random_coefficients(130, 3));
+    const auto f = synthesise(*transform, random_coefficients(130, 3, 1));
+    const auto again = synthesise(*transform, random_coefficients(130, 3, 1));
     CHECK(std::memcmp(f.data(), again.data(), f.size() * sizeof(double)) == 0);
     const auto a = analyse(*transform, 3, f);
     return std::pair(f, a.values);
@@ -249,7 +250,7 @@ TEST_CASE("a transform stops when asked to", "[transform]") {
   paths.each([&](Backend& backend) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, 200);
     const auto transform = backend.sphere_transform(grid, 200);
-    const SphereCoefficients a = random_coefficients(200, 1);
+    const SphereCoefficients a = random_coefficients(200, 1, 1);
     std::vector<double> values(grid.points());
     Fault fault = Fault::bad_argument;
     try {

@@ -1,6 +1,7 @@
 #include "tests/support/compare_transforms.hpp"
 
 #include "host/reference/sphere_transform.hpp"
+#include "host/spectrum/roundtrip.hpp"
 #include "tests/support/compare_moments.hpp"
 
 #include <catch2/catch.hpp>
@@ -31,18 +32,6 @@ double largest_error(std::span<const T> a, std::span<const T> b) {
 }
 
 } // namespace
-
-SphereCoefficients random_coefficients(int lmax, int fields, std::uint32_t seed) {
-  std::mt19937 engine(seed);
-  SphereCoefficients a(lmax, fields);
-  for (auto& v : a.values) {
-    const double re = uniform(engine);
-    v = {re, uniform(engine)};
-  }
-  for (int f = 0; f < fields; ++f)
-    for (int l = 0; l <= lmax; ++l) a.at(f, l, 0) = a.at(f, l, 0).real();
-  return a;
-}
 
 std::vector<double> random_values(std::size_t size, std::uint32_t seed) {
   std::mt19937 engine(seed);
@@ -92,7 +81,7 @@ void compare_transform(Backend& backend, const SphereGrid& grid, int lmax, int f
   INFO(name(grid.kind) << " grid of " << grid.rings << " rings of " << grid.ring_length << ", lmax " << lmax << ", "
                        << fields << " fields, " << backend.facts().name);
   const auto transform = backend.sphere_transform(grid, lmax);
-  const SphereCoefficients a = random_coefficients(lmax, fields);
+  const SphereCoefficients a = random_coefficients(lmax, fields, 1);
   const std::vector<double> g = random_values(std::size_t(fields) * grid.points());
   const auto s = synthesise(*transform, a), wa = analyse_adjoint(*transform, a);
   const auto b = analyse(*transform, fields, g), c = synthesise_adjoint(*transform, fields, g);

@@ -10,8 +10,6 @@
 
 namespace cowgpu::test {
 
-/// Coefficients uniform in [-0.5, 0.5] + i [-0.5, 0.5], real for m = 0.
-SphereCoefficients random_coefficients(int lmax, int fields, std::uint32_t seed = 1);
 /// Values uniform in [-0.5, 0.5].
 std::vector<double> random_values(std::size_t size, std::uint32_t seed = 2);
 

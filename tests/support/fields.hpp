@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-namespace cowgpu::tests {
+namespace cowgpu::test {
 
 inline std::string read_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -49,4 +49,4 @@ inline std::string damaged(std::string bytes, std::uint32_t seed) {
   return bytes;
 }
 
-} // namespace cowgpu::tests
+} // namespace cowgpu::test

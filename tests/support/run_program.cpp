@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-namespace cowgpu::tests {
+namespace cowgpu::test {
 namespace {
 
 struct Pipe {
@@ -102,4 +102,4 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-} // namespace cowgpu::tests
+} // namespace cowgpu::test

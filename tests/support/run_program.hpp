@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace cowgpu::tests {
+namespace cowgpu::test {
 
 struct ProgramRun {
   int exit_code = -1; ///< 128 + signal if one killed it
@@ -38,4 +38,4 @@ private:
   std::string path_;
 };
 
-} // namespace cowgpu::tests
+} // namespace cowgpu::test

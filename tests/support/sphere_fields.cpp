@@ -9,19 +9,6 @@
 
 namespace cowgpu::test {
 
-SphereCoefficients random_coefficients(int lmax, int fields, std::uint32_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  SphereCoefficients a(lmax, fields);
-  for (int f = 0; f < fields; ++f)
-    for (int m = 0; m <= lmax; ++m)
-      for (int l = m; l <= lmax; ++l) {
-        const double re = normal(random), im = normal(random);
-        a.at(f, l, m) = {re, m == 0 ? 0 : im};
-      }
-  return a;
-}
-
 double field_scale(const SphereCoefficients& a, int f) {
   double sum = 0;
   for (int m = 0; m <= a.lmax; ++m)
@@ -61,16 +48,6 @@ FieldAt field_at(const SphereCoefficients& a, int f, const Direction& place) {
     here = above;
   }
   return sum;
-}
-
-double largest_difference(const SphereCoefficients& a, const SphereCoefficients& b) {
-  double difference = 0, largest = 0;
-  for (std::size_t i = 0; i < b.values.size(); ++i) {
-    const double here = std::abs(a.values.at(i) - b.values[i]);
-    if (!(here <= difference)) difference = here;
-    largest = std::max(largest, std::abs(b.values[i]));
-  }
-  return difference / largest;
 }
 
 } // namespace cowgpu::test

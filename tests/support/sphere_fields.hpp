@@ -8,9 +8,6 @@
 
 namespace cowgpu::test {
 
-/// Normally distributed coefficients, those of m = 0 real.
-SphereCoefficients random_coefficients(int lmax, int fields, std::uint32_t seed);
-
 /// Root of the mean square of field f over the sphere: the scale of its values.
 double field_scale(const SphereCoefficients& coefficients, int f = 0);
 
@@ -21,8 +18,5 @@ struct FieldAt {
 
 /// Sums over all (l, m) of reference::legendre_column<long double>.
 FieldAt field_at(const SphereCoefficients& coefficients, int f, const Direction& direction);
-
-/// Largest |a - b| over the largest |b|.
-double largest_difference(const SphereCoefficients& a, const SphereCoefficients& b);
 
 } // namespace cowgpu::test

@@ -1,37 +1,21 @@
 // The Vulkan path of the verbs `analyse` and `synthesise`: forced layouts, the budget of loop iterations, stops, reports.
 // What both paths compute is held against the reference elsewhere.
 #include "host/error.hpp"
+#include "host/spectrum/roundtrip.hpp"
 #include "host/sphere_transform.hpp"
 #include "tests/support/compare_moments.hpp"
+#include "tests/support/compare_transforms.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
 #include <cstring>
 #include <numbers>
-#include <random>
 
 using namespace cowgpu;
 using namespace cowgpu::test;
 
 namespace {
-
-std::vector<double> random_values(std::size_t count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<double> values(count);
-  for (double& v : values) v = uniform(random);
-  return values;
-}
-
-SphereCoefficients random_coefficients(int lmax, int fields, unsigned seed = 1) {
-  SphereCoefficients a(lmax, fields);
-  const auto values = random_values(2 * a.values.size(), seed);
-  for (std::size_t i = 0; i < a.values.size(); ++i) a.values[i] = {values[2 * i], values[2 * i + 1]};
-  for (int f = 0; f < fields; ++f)
-    for (int l = 0; l <= lmax; ++l) a.at(f, l, 0) = a.at(f, l, 0).real();
-  return a;
-}
 
 /// What one transform gives in both directions for the same input.
 struct Both {
@@ -42,7 +26,7 @@ struct Both {
 Both both(SphereTransform& transform, int fields) {
   Monitor monitor;
   const std::size_t points = std::size_t(fields) * transform.grid().points();
-  const SphereCoefficients a = random_coefficients(transform.lmax(), fields);
+  const SphereCoefficients a = random_coefficients(transform.lmax(), fields, 1);
   Both result{std::vector<double>(points), std::vector<std::complex<double>>(a.values.size())};
   transform.synthesise(fields, a.values, result.values, monitor);
   transform.analyse(fields, random_values(points, 2), result.coefficients, monitor);
@@ -72,7 +56,7 @@ double distance(const std::vector<T>& a, const std::vector<T>& b) {
 /// Largest error of a round trip over the largest coefficient.
 double round_trip(SphereTransform& transform, int fields) {
   Monitor monitor;
-  const SphereCoefficients a = random_coefficients(transform.lmax(), fields);
+  const SphereCoefficients a = random_coefficients(transform.lmax(), fields, 1);
   SphereCoefficients back(a.lmax, fields);
   std::vector<double> values(std::size_t(fields) * transform.grid().points());
   transform.synthesise(fields, a.values, values, monitor);
@@ -175,8 +159,8 @@ TEST_CASE("rings of any length are transformed", "[transform][vulkan]") {
   const auto backend = gpu_backend();
   if (!backend) return skip_without_gpu();
   // Primes, squares and products of them, odd and even, beside the lengths that have butterflies of their own.
-  for (const int length : {41, 43, 49, 54, 77, 97, 121, 125, 127, 128, 160, 243, 251, 257, 343, 1021, 2048, 2187, 4096,
-                           4099, 6000, 8192}) {
+  for (const int length : {41,  43,  49,  54,  77,   97,   121,  125,  127,  128,  160,
+                           243, 251, 257, 343, 1021, 2048, 2187, 4096, 4099, 6000, 8192}) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, 21, length);
     const auto transform = backend->sphere_transform(grid, 20);
     INFO("ring length " << length);
@@ -256,7 +240,7 @@ TEST_CASE("a stop between batches leaves a transform usable", "[transform][vulka
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, 127);
   const auto transform = backend->sphere_transform(grid, 127);
   const Both before = both(*transform, 2);
-  const SphereCoefficients a = random_coefficients(127, 2);
+  const SphereCoefficients a = random_coefficients(127, 2, 1);
   std::vector<double> values(2 * grid.points());
   std::vector<std::complex<double>> coefficients(a.values.size());
   for (const int after : {0, 1, 2}) {
@@ -280,7 +264,7 @@ TEST_CASE("the report of a transform names its kernels and adds up", "[transform
   if (!backend) return skip_without_gpu();
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, 63);
   const auto transform = backend->sphere_transform(grid, 63);
-  const SphereCoefficients a = random_coefficients(63, 4);
+  const SphereCoefficients a = random_coefficients(63, 4, 1);
   std::vector<double> values(4 * grid.points());
   Monitor monitor;
   TransformReport one, four;
