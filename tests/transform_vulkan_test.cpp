@@ -175,8 +175,8 @@ TEST_CASE("rings of any length are transformed", "[transform][vulkan]") {
   const auto backend = gpu_backend();
   if (!backend) return skip_without_gpu();
   // Primes, squares and products of them, odd and even, beside the lengths that have butterflies of their own.
-  for (const int length : {41, 43, 49, 54, 77, 97, 121, 125, 127, 128, 160, 243, 251, 257, 343, 1021, 2048, 2187, 4096,
-                           4099, 6000, 8192}) {
+  for (const int length : {41,  43,  49,  54,  77,   97,   121,  125,  127,  128,  160,
+                           243, 251, 257, 343, 1021, 2048, 2187, 4096, 4099, 6000, 8192}) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, 21, length);
     const auto transform = backend->sphere_transform(grid, 20);
     INFO("ring length " << length);

@@ -162,7 +162,8 @@ private:
 engine::SphereTransformShape transform_shape_from(const GpuOptions& options) {
   engine::SphereTransformShape shape;
   shape.legendre.steps = options.transform_steps;
-  shape.legendre.rings = options.transform_rings;
+  shape.legendre.analysis_rings.fill(options.transform_rings);
+  shape.legendre.synthesis_rings.fill(options.transform_rings);
   shape.legendre.analysis_pairs = shape.legendre.synthesis_pairs = options.transform_pairs;
   shape.legendre.most_bytes = options.transform_binding;
   shape.legendre.iteration_budget = shape.fourier.iteration_budget = options.iteration_budget;
@@ -177,7 +178,8 @@ std::unique_ptr<SphereTransform> sphere_transform(engine::Gpu& gpu, const engine
 
 MemoryNeed sphere_transform_memory(const engine::GpuFacts& facts, const engine::SphereTransformShape& shape,
                                    const SphereGrid& grid, int lmax, int fields) {
-  const std::uint64_t pairs = std::uint64_t(grid.rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs * plan::block_pairs;
+  const std::uint64_t pairs =
+      std::uint64_t(grid.rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs * plan::block_pairs;
   const std::uint64_t orders = std::uint64_t(lmax) + 1;
   const std::uint64_t steps = orders * (orders / 4 + plan::step_multiple + 1); // of all orders, with padding
   MemoryNeed need;
