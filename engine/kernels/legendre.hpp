@@ -63,7 +63,10 @@ public:
   Legendre(Device& device, const LegendreShape& shape, const LegendreInput& input);
   ~Legendre();
 
-  /// Waves of the pairs of `slab`, [pair of the slab][field][column][E or O] complex, from `series`:
+  /// Lays the work out and uploads the lists of it, unless that was done before. Not while a job is being recorded.
+  void prepare(RingSlab slab, std::uint32_t fields, bool analysis) { layout(slab, fields, analysis); }
+
+  /// After prepare(). Waves of the pairs of `slab`, [pair of the slab][field][column][E or O] complex, from `series`:
   /// [group][k][field][lane][qe or qo] complex. Runs the job and calls `between` with the fraction done after every
   /// bounded batch; the rest is left recorded.
   using Between = std::function<void(double)>;

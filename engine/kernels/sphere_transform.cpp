@@ -124,6 +124,7 @@ void SphereTransform::to_values(std::uint32_t fields, bool weighted,
   series_->send();
   for (std::size_t s = 0; s < list.size(); ++s) {
     const auto at = [&](double part) { stop_if(hook((double(s) + part) / double(list.size()))); };
+    legendre_.prepare(list[s], fields, false);
     legendre_.synthesis(*job_, series_->buffer(), *waves_, list[s], fields, at);
     fourier_.to_values(*job_, {&values_->buffer(), waves_.get(), list[s], fields, legendre_.sizes().columns, weighted});
     job_->run();
@@ -143,6 +144,7 @@ void SphereTransform::to_series(std::uint32_t fields, bool weighted, const Value
     const auto at = [&](double part) { stop_if(hook((double(s) + part) / double(list.size()))); };
     give(list[s], values_->host<double>());
     values_->send();
+    legendre_.prepare(list[s], fields, true);
     fourier_.to_waves(*job_, {&values_->buffer(), waves_.get(), list[s], fields, legendre_.sizes().columns, weighted});
     legendre_.analysis(*job_, *waves_, series_->buffer(), list[s], fields, s == 0, at);
     job_->run();
