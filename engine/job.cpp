@@ -99,8 +99,7 @@ void Job::dispatch(const Kernel& kernel, std::span<const BufferRange> ranges, st
     const std::uint64_t size = range.size ? range.size : range.buffer->size() - range.offset;
     const bool texels = kernel.kind(b) != BindingKind::storage;
     const std::uint64_t texel_bytes = kernel.kind(b) == BindingKind::texel_double ? 8 : 16;
-    const std::uint64_t most =
-        texels ? texel_bytes * device_.limits().maxTexelBufferElements : device_.largest_range();
+    const std::uint64_t most = texels ? texel_bytes * device_.limits().maxTexelBufferElements : device_.largest_range();
     if (range.offset + size > range.buffer->size() || size > most)
       throw Error(Failure::out_of_range, 0,
                   fmt::format("binding {} of {} spans {} bytes; the device {} takes {}", b, kernel.name(), size,

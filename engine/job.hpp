@@ -16,7 +16,8 @@ struct BufferRange {
   std::uint64_t size = 0;
 };
 
-/// Records dispatches, copies and fills; each sees what the ones before it wrote. run() submits and waits. Timestamps
+/// Records dispatches, copies and fills; each sees what the ones before it wrote. run() submits and waits. No other job may
+/// run while one is being recorded (Buffer's read, write and clear may take one). Timestamps
 /// around each dispatch go to the device's profile.
 class Job {
 public:

@@ -33,7 +33,7 @@ struct TransformReport {
 ///   <a, b> = sum over l and m = -l ... l of conj(a_lm) b_lm  and  <f, g> = sum over the points of f g,
 /// analysis is A = S* W and its adjoint A* = W S.
 ///
-/// Not for several threads at once. All throw Error(bad_argument) for spans of the wrong size, Error(interrupted), and
+/// Keeps what it needs of its backend alive. Not for several threads at once. All throw Error(bad_argument) for spans of the wrong size, Error(interrupted), and
 /// on Vulkan Error(device_failed, device_lost). The same input on the same device gives the same bits.
 class SphereTransform {
 public:

@@ -5,7 +5,7 @@
 
 // Specialization constants. The width of a workgroup is the number of consecutive orders m that it works on, one a lane.
 #define LEGENDRE_STEPS_ID 1  // steps k of a segment, unrolled; even
-#define LEGENDRE_RINGS_ID 2  // pairs of rings an iteration works on, unrolled; 2, 4 or 8
+#define LEGENDRE_RINGS_ID 2  // pairs of rings an iteration works on, unrolled; 1, 2, 4 or 8
 #define LEGENDRE_FIELDS_ID 3 // fields that share the recurrence
 #define LEGENDRE_PAIRS_ID 4  // most pairs of rings of an item: sizes private arrays
 

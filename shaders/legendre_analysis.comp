@@ -47,8 +47,8 @@ void main() {
       do {
         ++count;
         const int at = slot(pair, begin);
-        double t[RINGS], before[RINGS], now[RINGS], wave[RINGS * PARTS];
-        [[unroll]] for (int r = 0; r < RINGS; ++r) {
+        double t[RING_LOOP], before[RING_LOOP], now[RING_LOOP], wave[RING_LOOP * PARTS];
+        FOR_RINGS {
           t[r] = packDouble2x32(texelFetch(rings, pair + r).xy);
           before[r] = previous[at + r];
           now[r] = current[at + r];
@@ -63,18 +63,18 @@ void main() {
         [[unroll]] for (int k = 0; k < STEPS; k += 2) {
           [[unroll]] for (int i = 0; i < PARTS; ++i) {
             double part = now[0] * wave[i];
-            [[unroll]] for (int r = 1; r < RINGS; ++r) part += now[r] * wave[r * PARTS + i];
+            FOR_RINGS if (r > 0) part += now[r] * wave[r * PARTS + i];
             sum[k * PARTS + i] += part;
           }
-          [[unroll]] for (int r = 0; r < RINGS; ++r) before[r] += (a[k] * t[r] + b[k]) * now[r];
+          FOR_RINGS before[r] += (a[k] * t[r] + b[k]) * now[r];
           [[unroll]] for (int i = 0; i < PARTS; ++i) {
             double part = before[0] * wave[i];
-            [[unroll]] for (int r = 1; r < RINGS; ++r) part += before[r] * wave[r * PARTS + i];
+            FOR_RINGS if (r > 0) part += before[r] * wave[r * PARTS + i];
             sum[(k + 1) * PARTS + i] += part;
           }
-          [[unroll]] for (int r = 0; r < RINGS; ++r) now[r] += (a[k + 1] * t[r] + b[k + 1]) * before[r];
+          FOR_RINGS now[r] += (a[k + 1] * t[r] + b[k + 1]) * before[r];
         }
-        [[unroll]] for (int r = 0; r < RINGS; ++r) {
+        FOR_RINGS {
           previous[at + r] = before[r];
           current[at + r] = now[r];
         }

@@ -6,6 +6,10 @@ layout(constant_id = LEGENDRE_RINGS_ID) const int RINGS = 4;
 layout(constant_id = LEGENDRE_FIELDS_ID) const int FIELDS = 1;
 layout(constant_id = LEGENDRE_PAIRS_ID) const int PAIRS = 256;
 
+// Mesa 22 does not unroll loops that run once, so that loops over rings run at least twice, the second time in vain.
+const int RING_LOOP = RINGS > 1 ? RINGS : 2;
+#define FOR_RINGS [[unroll]] for (int r = 0; r < RING_LOOP; ++r) if (r < RINGS)
+
 layout(binding = LEGENDRE_RECURRENCE) uniform usamplerBuffer recurrence;
 layout(binding = LEGENDRE_SEEDS) uniform usamplerBuffer seeds;
 layout(binding = LEGENDRE_INPUT) uniform usamplerBuffer inputs;
@@ -29,7 +33,7 @@ uint start_pairs(int first, int begin, int end, int seeds_at) {
   for (int pair = begin; pair < end; pair += RINGS) {
     ++count;
     const int at = slot(pair, first);
-    [[unroll]] for (int r = 0; r < RINGS; ++r) {
+    FOR_RINGS {
       const dvec2 start = two_doubles(texelFetch(seeds, seeds_at + (pair + r) * LANES));
       previous[at + r] = start.x;
       current[at + r] = start.y;

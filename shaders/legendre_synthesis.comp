@@ -52,24 +52,24 @@ void main() {
     do {
       ++count;
       const int at = slot(pair, begin);
-      double t[RINGS], before[RINGS], now[RINGS], sum[RINGS * PARTS];
-      [[unroll]] for (int r = 0; r < RINGS; ++r) {
+      double t[RING_LOOP], before[RING_LOOP], now[RING_LOOP], sum[RING_LOOP * PARTS];
+      FOR_RINGS {
         t[r] = packDouble2x32(texelFetch(rings, pair + r).xy);
         before[r] = previous[at + r];
         now[r] = current[at + r];
         [[unroll]] for (int i = 0; i < PARTS; ++i) sum[r * PARTS + i] = sums[(at + r) * PARTS + i];
       }
       [[unroll]] for (int k = 0; k < STEPS; k += 2) {
-        [[unroll]] for (int r = 0; r < RINGS; ++r) {
+        FOR_RINGS {
           [[unroll]] for (int i = 0; i < PARTS; ++i) sum[r * PARTS + i] += now[r] * q[k * PARTS + i];
           before[r] += (a[k] * t[r] + b[k]) * now[r];
         }
-        [[unroll]] for (int r = 0; r < RINGS; ++r) {
+        FOR_RINGS {
           [[unroll]] for (int i = 0; i < PARTS; ++i) sum[r * PARTS + i] += before[r] * q[(k + 1) * PARTS + i];
           now[r] += (a[k + 1] * t[r] + b[k + 1]) * before[r];
         }
       }
-      [[unroll]] for (int r = 0; r < RINGS; ++r) {
+      FOR_RINGS {
         previous[at + r] = before[r];
         current[at + r] = now[r];
         [[unroll]] for (int i = 0; i < PARTS; ++i) sums[(at + r) * PARTS + i] = sum[r * PARTS + i];

@@ -243,6 +243,19 @@ TEST_CASE("what does not fit a transform is refused", "[transform]") {
   });
 }
 
+TEST_CASE("a transform outlives its backend", "[transform]") {
+  const SphereGrid grid = make_grid(GridKind::driscoll_healy, 90);
+  for (const bool gpu : {false, true}) {
+    auto backend = gpu ? gpu_backend() : make_cpu_backend();
+    if (!backend) continue;
+    const auto transform = backend->sphere_transform(grid, 8);
+    backend.reset();
+    const SphereCoefficients a = random_coefficients(8, 1, 1);
+    check_at_most(relative_error(analyse(*transform, 1, synthesise(*transform, a)).values, a.values), 1e-14,
+                  gpu ? "Vulkan" : "CPU");
+  }
+}
+
 TEST_CASE("a transform stops when asked to", "[transform]") {
   struct Stop final : Monitor {
     bool stopped() const override { return true; }

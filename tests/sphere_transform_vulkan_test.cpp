@@ -1,6 +1,9 @@
 // The Vulkan path of the verbs `analyse` and `synthesise`: forced layouts, the budget of loop iterations, stops, reports.
 // What both paths compute is held against the reference elsewhere.
+#include "engine/device.hpp"
+#include "engine/kernels/sphere_transform.hpp"
 #include "host/error.hpp"
+#include "host/plan/legendre.hpp"
 #include "host/spectrum/roundtrip.hpp"
 #include "host/sphere_transform.hpp"
 #include "tests/support/compare_moments.hpp"
@@ -230,6 +233,61 @@ TEST_CASE("a loop the device ends early is an error, not a wrong result", "[tran
     CHECK(error.fault() == Fault::device_failed);
     CHECK(std::string(error.what()).find("ended a loop early") != std::string::npos);
   }
+}
+
+TEST_CASE("transforms on memory that the host does not share give the same bits", "[transform][vulkan]") {
+  if (!gpu_backend()) return skip_without_gpu();
+  const auto instance = engine::Instance::create(true);
+  const auto devices = instance->devices();
+  engine::PhysicalDevice physical = engine::choose_device(devices, "auto");
+  const SphereGrid grid = make_grid(GridKind::gauss_legendre, 40);
+  const plan::Legendre plan = plan::legendre(grid, 40);
+  engine::GpuFacts facts;
+  facts.type = "discrete"; // the layout of one
+  facts.subgroup_size = physical.subgroup_size;
+  facts.largest_range = 1 << 16; // several slabs
+  facts.largest_texels = 1 << 16;
+  const engine::SphereTransformShape shape = engine::sphere_transform_shape(facts);
+  const plan::Seeds seeds = plan::seeds(plan, int(shape.legendre.lanes), int(shape.legendre.steps));
+  const engine::LegendreInput legendre = {plan.lmax,    plan.polar_blocks * plan::block_pairs,
+                                          plan.t,       plan.offset,
+                                          plan.a,       plan.b,
+                                          plan.b_polar, seeds.start,
+                                          seeds.values};
+  const engine::RingFourierInput fourier = {grid.ring_length, plan.lmax + 1, plan.x, plan.weight};
+  constexpr std::uint32_t fields = 2;
+  const auto go_on = [](double) { return true; };
+  const auto run = [&] {
+    engine::Device device(instance, physical);
+    engine::SphereTransform transform(device, shape, legendre, fourier);
+    std::vector<double> result;
+    std::size_t slabs = 0;
+    const auto fill = [&](std::span<double> to) {
+      const auto values = random_values(to.size(), unsigned(++slabs));
+      std::copy(values.begin(), values.end(), to.begin());
+    };
+    const auto keep = [&](std::span<const double> from, std::size_t count) {
+      result.insert(result.end(), from.begin(), from.begin() + std::ptrdiff_t(count));
+    };
+    const std::size_t row = fields * 2 * std::size_t(grid.ring_length);
+    transform.to_values(
+        fields, false, fill, [&](engine::RingSlab slab, std::span<const double> v) { keep(v, row * slab.count); },
+        go_on);
+    slabs = 0;
+    transform.to_series(
+        fields, true, [&](engine::RingSlab, std::span<double> v) { fill(v); },
+        [&](std::span<const double> s) { keep(s, transform.series_index(40, 1, fields)); }, go_on);
+    CHECK(slabs > 1);
+    return result;
+  };
+  const std::vector<double> shared = run();
+  // Memory that is not cached for the host does not count as shared with it.
+  for (std::uint32_t t = 0; t < physical.memory.memoryTypeCount; ++t)
+    physical.memory.memoryTypes[t].propertyFlags &= ~VkMemoryPropertyFlags(VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+  const std::vector<double> apart = run();
+  CHECK(same(shared, apart));
+  CHECK(std::all_of(shared.begin(), shared.end(), [](double v) { return std::isfinite(v); }));
+  CHECK(instance->log().messages == std::vector<std::string>{});
 }
 
 TEST_CASE("a stop between batches leaves a transform usable", "[transform][vulkan]") {

@@ -28,9 +28,14 @@ LegendreShape legendre_shape(const GpuFacts& facts, LegendreShape wanted) {
   const bool software = facts.type == "software";
   if (wanted.lanes == 0) wanted.lanes = facts.subgroup_size;
   if (wanted.steps == 0) wanted.steps = software ? 32 : 8;
-  if (wanted.rings == 0) wanted.rings = 4;
-  if (wanted.analysis_pairs == 0) wanted.analysis_pairs = software ? 256 : 64;
-  if (wanted.synthesis_pairs == 0) wanted.synthesis_pairs = software ? 64 : wanted.rings;
+  const auto choose = [&](LegendreShape::ByFields& rings, const LegendreShape::ByFields& on_software) {
+    for (std::size_t f = 0; f < rings.size(); ++f)
+      if (rings[f] == 0) rings[f] = software ? on_software[f] : 4;
+  };
+  choose(wanted.analysis_rings, {4, 2, 2});
+  choose(wanted.synthesis_rings, {2, 1, 1});
+  if (wanted.analysis_pairs == 0) wanted.analysis_pairs = software ? 1024 : 64;
+  if (wanted.synthesis_pairs == 0) wanted.synthesis_pairs = software ? 128 : wanted.synthesis_rings[0];
   if (wanted.most_bytes == 0) wanted.most_bytes = facts.largest_range;
   wanted.most_bytes = std::min({wanted.most_bytes, facts.largest_range, 16 * facts.largest_texels});
   return wanted;
@@ -48,8 +53,8 @@ LegendreSizes::LegendreSizes(const LegendreShape& shape, int lmax) : lanes(shape
 
 // Consecutive groups of orders whose arrays fit into one binding each.
 struct Legendre::Chunk {
-  std::uint32_t begin = 0, end = 0;   // groups
-  std::uint32_t slots = 1;            // partial sums
+  std::uint32_t begin = 0, end = 0; // groups
+  std::uint32_t slots = 1;          // partial sums
   std::vector<Batch> batches;
 };
 
@@ -92,11 +97,16 @@ void Legendre::check_shape() const {
                        device_.physical().subgroup_size, device_.name()));
   if (shape_.steps == 0 || shape_.steps % 8 || shape_.steps > 64)
     refuse(fmt::format("segments of {} steps: 8, 16, ... 64 are possible", shape_.steps));
-  if (shape_.rings != 2 && shape_.rings != 4 && shape_.rings != 8)
-    refuse(fmt::format("{} pairs of rings at once: 2, 4 or 8 are possible", shape_.rings));
-  for (const std::uint32_t pairs : {shape_.analysis_pairs, shape_.synthesis_pairs})
-    if (pairs == 0 || pairs % shape_.rings)
-      refuse(fmt::format("{} pairs of rings a workgroup, which works on {} at once", pairs, shape_.rings));
+  const auto check = [&](const LegendreShape::ByFields& all, std::uint32_t pairs) {
+    for (const std::uint32_t rings : all) {
+      if (!std::has_single_bit(rings) || rings > block_pairs)
+        refuse(fmt::format("{} pairs of rings at once: 1, 2, 4 or 8 are possible", rings));
+      if (pairs == 0 || pairs % rings)
+        refuse(fmt::format("{} pairs of rings a workgroup, which works on {} at once", pairs, rings));
+    }
+  };
+  check(shape_.analysis_rings, shape_.analysis_pairs);
+  check(shape_.synthesis_rings, shape_.synthesis_pairs);
 }
 
 void Legendre::upload(const LegendreInput& input) {
@@ -115,7 +125,8 @@ void Legendre::upload(const LegendreInput& input) {
       if (m > std::uint64_t(input.lmax)) break;
       const std::size_t own = input.offset[m + 1] - input.offset[m];
       for (std::size_t k = 0; k < std::min<std::size_t>(own, count); ++k) {
-        const std::uint64_t polar = 2 * ((2 * sizes_.first_step[g] + k) * lanes + lane), other = polar + 2 * count * lanes;
+        const std::uint64_t polar = 2 * ((2 * sizes_.first_step[g] + k) * lanes + lane),
+                            other = polar + 2 * count * lanes;
         to[polar] = to[other] = input.a[input.offset[m] + k];
         to[polar + 1] = input.b_polar[input.offset[m] + k];
         to[other + 1] = input.b[input.offset[m] + k];
@@ -143,12 +154,12 @@ void Legendre::upload(const LegendreInput& input) {
   first_active_->write(std::as_bytes(std::span(first_)));
 }
 
-std::vector<RingSlab> Legendre::ranges(RingSlab slab, std::uint32_t most, bool analysis) const {
+std::vector<RingSlab> Legendre::ranges(RingSlab slab, std::uint32_t most, std::uint32_t multiple, bool analysis) const {
   std::vector<RingSlab> list;
   const auto cut = [&](std::uint32_t begin, std::uint32_t end) {
     if (begin >= end) return;
     const std::uint32_t parts = (end - begin + most - 1) / most;
-    const std::uint32_t size = ((end - begin + parts - 1) / parts + shape_.rings - 1) / shape_.rings * shape_.rings;
+    const std::uint32_t size = ((end - begin + parts - 1) / parts + multiple - 1) / multiple * multiple;
     for (; begin < end; begin += size) list.push_back({begin, std::min(size, end - begin)});
   };
   const std::uint32_t end = slab.first + slab.count, middle = std::clamp(polar_pairs_, slab.first, end);
@@ -161,9 +172,9 @@ std::vector<RingSlab> Legendre::ranges(RingSlab slab, std::uint32_t most, bool a
   return list;
 }
 
-Legendre::Cost Legendre::cost(std::uint32_t group, RingSlab range, bool analysis) const {
+Legendre::Cost Legendre::cost(std::uint32_t group, RingSlab range, std::uint32_t rings, bool analysis) const {
   const std::uint32_t end = range.first + range.count;
-  const auto turns = [&](std::uint32_t from, std::uint32_t to) { return to > from ? (to - from - 1) / shape_.rings + 1 : 0; };
+  const auto turns = [&](std::uint32_t from, std::uint32_t to) { return to > from ? (to - from - 1) / rings + 1 : 0; };
   Cost cost;
   if (!analysis) cost.counted = 2 * turns(range.first, end);
   cost.segments = std::uint32_t((sizes_.first_step[group + 1] - sizes_.first_step[group]) / shape_.steps);
@@ -176,13 +187,13 @@ Legendre::Cost Legendre::cost(std::uint32_t group, RingSlab range, bool analysis
     if (analysis) turned = turns(begun, std::min(end, polar_pairs_)) + turns(std::max(begun, polar_pairs_), end);
     cost.counted += 1 + turned + turns(begun, loaded);
     cost.loops += 8; // zones, and the ends of loops
-    cost.work += double(turned) * shape_.rings;
+    cost.work += double(turned) * rings;
     loaded = std::min(loaded, begun);
   }
   if (analysis) cost.first_segment = 0;
   cost.loops += cost.counted + 8;
   // Loading a segment costs about what two turns do.
-  cost.work = (cost.work + 2.0 * (cost.segments - cost.first_segment) * shape_.rings) * shape_.steps * sizes_.lanes;
+  cost.work = (cost.work + 2.0 * (cost.segments - cost.first_segment) * rings) * shape_.steps * sizes_.lanes;
   return cost;
 }
 
@@ -196,15 +207,16 @@ Legendre::Layout& Legendre::layout(RingSlab slab, std::uint32_t fields, bool ana
   made->fields = fields;
   made->analysis = analysis;
 
+  const std::uint32_t rings = this->rings(fields, analysis);
   std::uint32_t most = analysis ? shape_.analysis_pairs : shape_.synthesis_pairs;
   std::vector<RingSlab> parts;
-  for (;; most = std::max(most / 2 / shape_.rings * shape_.rings, shape_.rings)) {
-    parts = ranges(slab, most, analysis);
+  for (;; most = std::max(most / 2 / rings * rings, rings)) {
+    parts = ranges(slab, most, rings, analysis);
     std::uint64_t loops = 0;
     for (const RingSlab& part : parts)
-      for (std::uint32_t g = 0; g < sizes_.groups; ++g) loops = std::max(loops, cost(g, part, analysis).loops);
+      for (std::uint32_t g = 0; g < sizes_.groups; ++g) loops = std::max(loops, cost(g, part, rings, analysis).loops);
     if (loops <= shape_.iteration_budget) break;
-    if (most == shape_.rings)
+    if (most == rings)
       throw Error(Failure::out_of_range, 0,
                   fmt::format("{} loop iterations of a transform to this degree are more than the {} allowed on the "
                               "device {}; lower --lmax or use --device cpu",
@@ -251,7 +263,7 @@ void Legendre::add_chunk(Layout& layout, std::uint32_t begin, std::uint32_t end,
   double all = 0;
   for (std::uint32_t g = begin; g < end; ++g)
     for (std::size_t part = 0; part < parts.size(); ++part) {
-      const Cost cost = this->cost(g, parts[part], layout.analysis);
+      const Cost cost = this->cost(g, parts[part], rings(layout.fields, layout.analysis), layout.analysis);
       const std::uint64_t step = sizes_.first_step[g] - sizes_.first_step[begin];
       const shaders::LegendreItem item = {g,
                                           parts[part].first,
@@ -292,14 +304,13 @@ void Legendre::run(Job& job, Layout& layout, const Buffer& input, const Buffer& 
                    const Between& between) {
   const bool analysis = layout.analysis;
   const std::uint64_t lanes = sizes_.lanes, fields = layout.fields;
-  const Kernel& kernel =
-      device_.kernel({analysis ? "legendre_analysis" : "legendre_synthesis",
-                      analysis ? shaders::legendre_analysis : shaders::legendre_synthesis,
-                      LEGENDRE_BINDINGS,
-                      sizeof(shaders::LegendrePush),
-                      {shape_.lanes, shape_.steps, shape_.rings, layout.fields,
-                       analysis ? shape_.analysis_pairs : shape_.synthesis_pairs},
-                      binding_kinds()});
+  const Kernel& kernel = device_.kernel({analysis ? "legendre_analysis" : "legendre_synthesis",
+                                         analysis ? shaders::legendre_analysis : shaders::legendre_synthesis,
+                                         LEGENDRE_BINDINGS,
+                                         sizeof(shaders::LegendrePush),
+                                         {shape_.lanes, shape_.steps, rings(layout.fields, analysis), layout.fields,
+                                          analysis ? shape_.analysis_pairs : shape_.synthesis_pairs},
+                                         binding_kinds()});
   const std::uint64_t wave_bytes = 32 * fields * sizes_.columns * layout.slab.count;
   double work = 0, all = 0, done = 0;
   for (const Chunk& chunk : layout.chunks)
@@ -316,12 +327,15 @@ void Legendre::run(Job& job, Layout& layout, const Buffer& input, const Buffer& 
         {seeds_.get(), 16 * lanes * pairs_ * chunk.begin, 16 * lanes * pairs_ * (chunk.end - chunk.begin)},
         analysis ? waves : series,
         {rings_.get()},
-        !analysis ? waves : sum ? partial : series,
+        !analysis ? waves
+        : sum     ? partial
+                  : series,
         {layout.item_buffer.get()},
         {first_active_.get()},
         {layout.counts.get()}};
     for (const Batch& batch : chunk.batches) {
-      const shaders::LegendrePush push = {batch.first, layout.slab.first, sizes_.columns, polar_pairs_, first_segments_};
+      const shaders::LegendrePush push = {batch.first, layout.slab.first, sizes_.columns, polar_pairs_,
+                                          first_segments_};
       job.dispatch(kernel, ranges, std::as_bytes(std::span(&push, 1)), batch.count);
       work += batch.work * (2 + 4 * double(fields));
       done += batch.work;
@@ -331,13 +345,10 @@ void Legendre::run(Job& job, Layout& layout, const Buffer& input, const Buffer& 
       between(done / all);
     }
     if (!sum) continue;
-    const shaders::LegendreSumPush push = {std::uint32_t(series_bytes / 16), std::uint32_t(series_bytes / 16), chunk.slots,
-                                           add ? 1U : 0U};
-    const Kernel& sum_kernel = device_.kernel({"legendre_sum",
-                                               shaders::legendre_sum,
-                                               LEGENDRE_SUM_BINDINGS,
-                                               sizeof(shaders::LegendreSumPush),
-                                               {64}});
+    const shaders::LegendreSumPush push = {std::uint32_t(series_bytes / 16), std::uint32_t(series_bytes / 16),
+                                           chunk.slots, add ? 1U : 0U};
+    const Kernel& sum_kernel = device_.kernel(
+        {"legendre_sum", shaders::legendre_sum, LEGENDRE_SUM_BINDINGS, sizeof(shaders::LegendreSumPush), {64}});
     const BufferRange sum_ranges[LEGENDRE_SUM_BINDINGS] = {partial, series};
     job.dispatch(sum_kernel, sum_ranges, std::as_bytes(std::span(&push, 1)),
                  std::min<std::uint32_t>(push.size / 256 + 1, 16384));

@@ -6,6 +6,7 @@
 #include "engine/gpu.hpp"
 #include "engine/kernels/ring_fourier.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -15,19 +16,24 @@
 
 namespace cowgpu::engine {
 
+/// Fields that share the recurrence at most.
+inline constexpr std::uint32_t most_fields_together = 3;
+
 /// How the work is laid out on a device. Zeros are filled in by the kind of device.
 struct LegendreShape {
-  std::uint32_t lanes = 0;           ///< orders m a workgroup: the subgroup's size
+  using ByFields = std::array<std::uint32_t, most_fields_together>; // for 1, 2, 3 fields
+  std::uint32_t lanes = 0;                                          ///< orders m a workgroup: the subgroup's size
   std::uint32_t steps = 0;           ///< steps k of a segment, unrolled; a multiple of 8, at most 64
-  std::uint32_t rings = 0;           ///< pairs of rings worked on together; 2, 4 or 8
-  std::uint32_t analysis_pairs = 0;  ///< most pairs of rings a workgroup of the analysis sums over; a multiple of `rings`
-  std::uint32_t synthesis_pairs = 0; ///< most pairs of rings a workgroup of the synthesis works on; the same
+  ByFields analysis_rings = {};      ///< pairs of rings worked on together; 1, 2, 4 or 8
+  ByFields synthesis_rings = {};     ///< the same
+  std::uint32_t analysis_pairs = 0;  ///< most pairs of rings a workgroup sums over; a multiple of all analysis_rings
+  std::uint32_t synthesis_pairs = 0; ///< most pairs of rings a workgroup works on; a multiple of all synthesis_rings
   std::uint32_t iteration_budget = 60000; ///< loop iterations an invocation may run in one dispatch
   std::uint64_t most_bytes = 0;           ///< a binding spans at most; 0: what the device can
 };
 
-/// Software devices run 32 steps on 4 pairs of rings in registers and keep the state of many pairs in private arrays;
-/// others run 8 steps on 4 pairs and keep all state in registers.
+/// Software devices run 32 steps in registers, on few pairs of rings at a time where registers are short, and keep the
+/// state of many pairs in private arrays. Others run 8 steps on 4 pairs; the synthesis keeps all state in registers.
 LegendreShape legendre_shape(const GpuFacts& facts, LegendreShape wanted = {});
 
 /// What host/plan/legendre.hpp makes; `start` and `seeds` for groups of `lanes` orders and segments of `steps` steps.
@@ -45,8 +51,8 @@ struct LegendreInput {
 struct LegendreSizes {
   LegendreSizes(const LegendreShape& shape, int lmax);
   std::uint32_t groups = 0;
-  std::uint32_t columns = 0;                  ///< groups * lanes: orders with padding
-  std::vector<std::uint64_t> first_step;      ///< of each group; groups + 1 entries
+  std::uint32_t columns = 0;             ///< groups * lanes: orders with padding
+  std::vector<std::uint64_t> first_step; ///< of each group; groups + 1 entries
   std::uint64_t series_doubles(std::uint32_t fields) const { return first_step.back() * fields * 4 * lanes; }
   std::uint32_t lanes = 0;
 };
@@ -57,7 +63,10 @@ public:
   Legendre(Device& device, const LegendreShape& shape, const LegendreInput& input);
   ~Legendre();
 
-  /// Waves of the pairs of `slab`, [pair of the slab][field][column][E or O] complex, from `series`:
+  /// Lays the work out and uploads the lists of it, unless that was done before. Not while a job is being recorded.
+  void prepare(RingSlab slab, std::uint32_t fields, bool analysis) { layout(slab, fields, analysis); }
+
+  /// After prepare(). Waves of the pairs of `slab`, [pair of the slab][field][column][E or O] complex, from `series`:
   /// [group][k][field][lane][qe or qo] complex. Runs the job and calls `between` with the fraction done after every
   /// bounded batch; the rest is left recorded.
   using Between = std::function<void(double)>;
@@ -87,8 +96,11 @@ private:
   };
   void check_shape() const;
   void upload(const LegendreInput& input);
-  std::vector<RingSlab> ranges(RingSlab slab, std::uint32_t most, bool analysis) const;
-  Cost cost(std::uint32_t group, RingSlab range, bool analysis) const;
+  std::uint32_t rings(std::uint32_t fields, bool analysis) const {
+    return (analysis ? shape_.analysis_rings : shape_.synthesis_rings)[fields - 1];
+  }
+  std::vector<RingSlab> ranges(RingSlab slab, std::uint32_t most, std::uint32_t multiple, bool analysis) const;
+  Cost cost(std::uint32_t group, RingSlab range, std::uint32_t rings, bool analysis) const;
   Layout& layout(RingSlab slab, std::uint32_t fields, bool analysis);
   void add_chunk(Layout& layout, std::uint32_t begin, std::uint32_t end, const std::vector<RingSlab>& parts);
   static void arrange(std::vector<Work>& sorted);

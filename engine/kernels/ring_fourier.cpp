@@ -128,9 +128,9 @@ void RingFourier::whole_rings(Job& job, const Work& work, bool to_waves) {
   expected_ = std::uint32_t(iterations(points_, orders_, radices_, to_waves));
   if (!counts_ || counts_->size() < 4 * counted_)
     counts_ = std::make_unique<Buffer>(device_, 4 * counted_, "the step counts of rings");
-  const BufferRange ranges[] = {{work.values, 0, values_bytes}, {work.waves, 0, waves_bytes}, {twiddles_.get()},
-                                {rings_.get()},                 {work.values, 0, values_bytes}, {work.waves, 0, waves_bytes},
-                                {counts_.get()}};
+  const BufferRange ranges[] = {
+      {work.values, 0, values_bytes}, {work.waves, 0, waves_bytes}, {twiddles_.get()}, {rings_.get()},
+      {work.values, 0, values_bytes}, {work.waves, 0, waves_bytes}, {counts_.get()}};
   job.dispatch(kernel, ranges, std::as_bytes(std::span(&push, 1)), counted_);
 }
 
@@ -143,7 +143,8 @@ void RingFourier::pass_by_pass(Job& job, const Work& work, bool to_waves) {
   }
   const Buffer *from = first_.get(), *to = second_.get();
   const auto dispatch = [&](std::uint32_t kind, std::uint64_t each, std::uint32_t radix, std::uint32_t length) {
-    const std::uint64_t workgroups = std::min<std::uint64_t>((rows * each + pass_lanes - 1) / pass_lanes, most_workgroups);
+    const std::uint64_t workgroups =
+        std::min<std::uint64_t>((rows * each + pass_lanes - 1) / pass_lanes, most_workgroups);
     const std::uint64_t turns = (rows * each - 1) / (workgroups * pass_lanes) + 1;
     const std::uint64_t loops = turns * (1 + (has_butterfly(radix) ? 0 : radix + 1));
     if (loops > shape_.iteration_budget)
@@ -160,9 +161,14 @@ void RingFourier::pass_by_pass(Job& job, const Work& work, bool to_waves) {
     shaders::RingFourierPush push = push_for(work, points_, orders_);
     push.radix[0] = radix;
     push.span = length;
-    const BufferRange ranges[] = {{work.values, 0, values_bytes}, {work.waves, 0, waves_bytes}, {twiddles_.get()},
-                                  {rings_.get()},                 {work.values, 0, values_bytes}, {work.waves, 0, waves_bytes},
-                                  {from, 0, 16 * rows * points_}, {to, 0, 16 * rows * points_}};
+    const BufferRange ranges[] = {{work.values, 0, values_bytes},
+                                  {work.waves, 0, waves_bytes},
+                                  {twiddles_.get()},
+                                  {rings_.get()},
+                                  {work.values, 0, values_bytes},
+                                  {work.waves, 0, waves_bytes},
+                                  {from, 0, 16 * rows * points_},
+                                  {to, 0, 16 * rows * points_}};
     job.dispatch(kernel, ranges, std::as_bytes(std::span(&push, 1)), std::uint32_t(workgroups));
     std::swap(from, to);
   };

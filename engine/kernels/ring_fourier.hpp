@@ -20,15 +20,16 @@ struct RingSlab {
 };
 
 struct RingFourierShape {
-  std::uint32_t lanes = 0;           ///< pairs of rings a workgroup: the subgroup's size
-  std::uint32_t private_points = 0;  ///< longest ring transformed in private arrays; 0: none, pass by pass through buffers
+  std::uint32_t lanes = 0; ///< pairs of rings a workgroup: the subgroup's size
+  std::uint32_t private_points =
+      0; ///< longest ring transformed in private arrays; 0: none, pass by pass through buffers
   std::uint32_t iteration_budget = 60000;
 };
 
 struct RingFourierInput {
-  int points = 1;                ///< of a ring
-  int orders = 1;                ///< m = 0 ... orders - 1, 2 orders - 1 <= points
-  std::span<const double> x;     ///< cos theta of each pair
+  int points = 1;                 ///< of a ring
+  int orders = 1;                 ///< m = 0 ... orders - 1, 2 orders - 1 <= points
+  std::span<const double> x;      ///< cos theta of each pair
   std::span<const double> weight; ///< of each pair
 };
 

@@ -8,6 +8,9 @@
 namespace cowgpu::engine {
 namespace {
 
+// Software devices keep private arrays on the stack of their threads: 8 MiB as a rule, 2 MiB where the limit is lifted.
+constexpr std::uint64_t private_ring_bytes = std::uint64_t(1) << 20;
+
 // Pairs of rings of a slab, a multiple of 8: waves, values and passes fit into one binding each.
 std::uint32_t slab_pairs(std::uint64_t most_bytes, std::uint64_t columns, std::uint64_t points, std::uint64_t fields,
                          std::uint32_t pairs) {
@@ -26,7 +29,8 @@ void stop_if(bool go_on) {
 SphereTransformShape sphere_transform_shape(const GpuFacts& facts, SphereTransformShape wanted) {
   wanted.legendre = legendre_shape(facts, wanted.legendre);
   if (wanted.fourier.lanes == 0) wanted.fourier.lanes = facts.subgroup_size;
-  if (facts.type != "software") wanted.fourier.private_points = 0;
+  const auto fit = std::uint32_t(private_ring_bytes / (32 * wanted.fourier.lanes));
+  wanted.fourier.private_points = facts.type == "software" ? std::min(wanted.fourier.private_points, fit) : 0;
   return wanted;
 }
 
@@ -36,8 +40,8 @@ std::uint64_t sphere_transform_device_bytes(const SphereTransformShape& shape, c
   const LegendreSizes sizes(shape.legendre, lmax);
   const std::uint64_t together = std::min<std::uint64_t>(std::uint64_t(fields), most_fields_together);
   const std::uint64_t lanes = sizes.lanes, steps = sizes.first_step.back(), series = 8 * sizes.series_doubles(together);
-  const std::uint64_t slab = slab_pairs(shape.legendre.most_bytes, sizes.columns, std::uint64_t(points), together,
-                                        std::uint32_t(pairs));
+  const std::uint64_t slab =
+      slab_pairs(shape.legendre.most_bytes, sizes.columns, std::uint64_t(points), together, std::uint32_t(pairs));
   const std::uint64_t segments = sizes.first_step[1] / shape.legendre.steps;
   // Recurrence, start values, first active rings, rings and roots of unity.
   const std::uint64_t fixed = 32 * steps * lanes + 16 * sizes.columns * pairs + 4 * segments * sizes.groups +
@@ -83,8 +87,7 @@ std::size_t SphereTransform::series_steps(int m) const {
 }
 
 std::vector<RingSlab> SphereTransform::slabs(std::uint32_t fields) const {
-  const std::uint32_t size =
-      slab_pairs(shape_.legendre.most_bytes, legendre_.sizes().columns, points_, fields, pairs_);
+  const std::uint32_t size = slab_pairs(shape_.legendre.most_bytes, legendre_.sizes().columns, points_, fields, pairs_);
   std::vector<RingSlab> list;
   for (std::uint32_t first = 0; first < pairs_; first += size) list.push_back({first, std::min(size, pairs_ - first)});
   return list;
@@ -121,6 +124,7 @@ void SphereTransform::to_values(std::uint32_t fields, bool weighted,
   series_->send();
   for (std::size_t s = 0; s < list.size(); ++s) {
     const auto at = [&](double part) { stop_if(hook((double(s) + part) / double(list.size()))); };
+    legendre_.prepare(list[s], fields, false);
     legendre_.synthesis(*job_, series_->buffer(), *waves_, list[s], fields, at);
     fourier_.to_values(*job_, {&values_->buffer(), waves_.get(), list[s], fields, legendre_.sizes().columns, weighted});
     job_->run();
@@ -140,6 +144,7 @@ void SphereTransform::to_series(std::uint32_t fields, bool weighted, const Value
     const auto at = [&](double part) { stop_if(hook((double(s) + part) / double(list.size()))); };
     give(list[s], values_->host<double>());
     values_->send();
+    legendre_.prepare(list[s], fields, true);
     fourier_.to_waves(*job_, {&values_->buffer(), waves_.get(), list[s], fields, legendre_.sizes().columns, weighted});
     legendre_.analysis(*job_, *waves_, series_->buffer(), list[s], fields, s == 0, at);
     job_->run();

@@ -17,15 +17,13 @@ namespace cowgpu::engine {
 class HostBuffer;
 class Job;
 
-/// Fields that share the recurrence of a Legendre kernel at most.
-inline constexpr std::uint32_t most_fields_together = 3;
-
 struct SphereTransformShape {
   LegendreShape legendre;
   RingFourierShape fourier;
 };
 
-/// Software devices keep rings of up to 4096 points in private arrays, other devices go pass by pass.
+/// Software devices keep rings in private arrays as far as their stacks allow (4096 points with 8 lanes), other devices
+/// go pass by pass.
 SphereTransformShape sphere_transform_shape(const GpuFacts& facts, SphereTransformShape wanted = {});
 
 /// Bytes on the device for transforms of so many fields together: an upper bound.

@@ -30,18 +30,18 @@ DeviceFacts facts_of(const engine::GpuFacts& gpu) {
 class GpuBackend final : public Backend {
 public:
   explicit GpuBackend(const GpuOptions& options)
-      : gpu_(options.device, options.validation), facts_(facts_of(gpu_.facts())),
-        shape_(engine::moments_shape(gpu_.facts(), gpu::shape_from(options))),
-        transform_shape_(engine::sphere_transform_shape(gpu_.facts(), gpu::transform_shape_from(options))) {}
+      : gpu_(std::make_shared<engine::Gpu>(options.device, options.validation)), facts_(facts_of(gpu_->facts())),
+        shape_(engine::moments_shape(gpu_->facts(), gpu::shape_from(options))),
+        transform_shape_(engine::sphere_transform_shape(gpu_->facts(), gpu::transform_shape_from(options))) {}
 
   const DeviceFacts& facts() const override { return facts_; }
 
   Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
-    return gpu::translated([&] { return gpu::moments(gpu_, shape_, problem, monitor, report); });
+    return gpu::translated([&] { return gpu::moments(*gpu_, shape_, problem, monitor, report); });
   }
 
   MemoryNeed moments_memory(const MomentProblem& problem) const override {
-    return gpu::moments_memory(gpu_.facts(), shape_, problem);
+    return gpu::moments_memory(gpu_->facts(), shape_, problem);
   }
 
   std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) override {
@@ -49,17 +49,17 @@ public:
   }
 
   MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
-    return gpu::sphere_transform_memory(gpu_.facts(), transform_shape_, grid, lmax, fields);
+    return gpu::sphere_transform_memory(gpu_->facts(), transform_shape_, grid, lmax, fields);
   }
 
   double measured_peak() override {
-    return gpu::translated([&] { return engine::peak(gpu_.device()); });
+    return gpu::translated([&] { return engine::peak(gpu_->device()); });
   }
 
-  std::vector<std::string> validation_messages() const override { return gpu_.validation_messages(); }
+  std::vector<std::string> validation_messages() const override { return gpu_->validation_messages(); }
 
 private:
-  engine::Gpu gpu_;
+  std::shared_ptr<engine::Gpu> gpu_;
   DeviceFacts facts_;
   engine::MomentsShape shape_;
   engine::SphereTransformShape transform_shape_;

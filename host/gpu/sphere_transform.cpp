@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cowgpu::gpu {
 namespace {
@@ -14,8 +15,9 @@ constexpr std::size_t rings_a_task = 64;
 
 class GpuTransform final : public SphereTransform {
 public:
-  GpuTransform(engine::Gpu& gpu, const engine::SphereTransformShape& shape, const SphereGrid& grid, int lmax)
-      : SphereTransform(grid, lmax), gpu_(gpu), plan_(plan::legendre(grid, lmax)) {
+  GpuTransform(std::shared_ptr<engine::Gpu> gpu, const engine::SphereTransformShape& shape, const SphereGrid& grid,
+               int lmax)
+      : SphereTransform(grid, lmax), gpu_(std::move(gpu)), plan_(plan::legendre(grid, lmax)) {
     const plan::Seeds seeds = plan::seeds(plan_, int(shape.legendre.lanes), int(shape.legendre.steps));
     steps_ = plan::active_steps(plan_, seeds);
     engine::LegendreInput legendre;
@@ -29,7 +31,7 @@ public:
     legendre.start = seeds.start;
     legendre.seeds = seeds.values;
     engine_ = std::make_unique<engine::SphereTransform>(
-        gpu.device(), shape, legendre, engine::RingFourierInput{grid.ring_length, lmax + 1, plan_.x, plan_.weight});
+        gpu_->device(), shape, legendre, engine::RingFourierInput{grid.ring_length, lmax + 1, plan_.x, plan_.weight});
     for (std::vector<double>* uploaded : {&plan_.a, &plan_.b, &plan_.b_polar}) *uploaded = {};
   }
 
@@ -78,7 +80,7 @@ private:
   /// Calls work(first, n, hook) for groups of fields that go together, and fills the report.
   template <class GroupWork>
   void in_groups(int fields, const char* what, Monitor& monitor, TransformReport& report, const GroupWork& work) {
-    gpu_.take_profile();
+    gpu_->take_profile();
     std::uint32_t done = 0;
     const auto all = std::uint32_t(fields);
     while (done < all) {
@@ -93,7 +95,7 @@ private:
       report.legendre_flops += steps_ * (4 + 8 * double(n));
     }
     report.fourier_flops = 5 * double(ring_length()) * std::log2(double(ring_length())) * plan_.pairs * fields;
-    for (const auto& k : gpu_.take_profile()) {
+    for (const auto& k : gpu_->take_profile()) {
       report.kernels.push_back({k.kernel, k.dispatches, k.seconds});
       (k.kernel.starts_with("legendre") ? report.legendre_seconds : report.fourier_seconds) += k.seconds;
     }
@@ -151,7 +153,7 @@ private:
     });
   }
 
-  engine::Gpu& gpu_;
+  std::shared_ptr<engine::Gpu> gpu_;
   plan::Legendre plan_; // without what was uploaded
   double steps_ = 0;    // of the recurrence, one transform
   std::unique_ptr<engine::SphereTransform> engine_;
@@ -162,7 +164,8 @@ private:
 engine::SphereTransformShape transform_shape_from(const GpuOptions& options) {
   engine::SphereTransformShape shape;
   shape.legendre.steps = options.transform_steps;
-  shape.legendre.rings = options.transform_rings;
+  shape.legendre.analysis_rings.fill(options.transform_rings);
+  shape.legendre.synthesis_rings.fill(options.transform_rings);
   shape.legendre.analysis_pairs = shape.legendre.synthesis_pairs = options.transform_pairs;
   shape.legendre.most_bytes = options.transform_binding;
   shape.legendre.iteration_budget = shape.fourier.iteration_budget = options.iteration_budget;
@@ -170,14 +173,16 @@ engine::SphereTransformShape transform_shape_from(const GpuOptions& options) {
   return shape;
 }
 
-std::unique_ptr<SphereTransform> sphere_transform(engine::Gpu& gpu, const engine::SphereTransformShape& shape,
-                                                  const SphereGrid& grid, int lmax) {
-  return std::make_unique<GpuTransform>(gpu, shape, grid, lmax);
+std::unique_ptr<SphereTransform> sphere_transform(std::shared_ptr<engine::Gpu> gpu,
+                                                  const engine::SphereTransformShape& shape, const SphereGrid& grid,
+                                                  int lmax) {
+  return std::make_unique<GpuTransform>(std::move(gpu), shape, grid, lmax);
 }
 
 MemoryNeed sphere_transform_memory(const engine::GpuFacts& facts, const engine::SphereTransformShape& shape,
                                    const SphereGrid& grid, int lmax, int fields) {
-  const std::uint64_t pairs = std::uint64_t(grid.rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs * plan::block_pairs;
+  const std::uint64_t pairs =
+      std::uint64_t(grid.rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs * plan::block_pairs;
   const std::uint64_t orders = std::uint64_t(lmax) + 1;
   const std::uint64_t steps = orders * (orders / 4 + plan::step_multiple + 1); // of all orders, with padding
   MemoryNeed need;

@@ -12,9 +12,10 @@ namespace cowgpu::gpu {
 /// The parts of a layout that options fix.
 engine::SphereTransformShape transform_shape_from(const GpuOptions& options);
 
-/// `gpu` must outlive what is made.
-std::unique_ptr<SphereTransform> sphere_transform(engine::Gpu& gpu, const engine::SphereTransformShape& shape,
-                                                  const SphereGrid& grid, int lmax);
+/// What is made keeps the device open.
+std::unique_ptr<SphereTransform> sphere_transform(std::shared_ptr<engine::Gpu> gpu,
+                                                  const engine::SphereTransformShape& shape, const SphereGrid& grid,
+                                                  int lmax);
 
 /// Host: the plan with its start values, which are given up once they are on the device. Device: see
 /// engine::sphere_transform_device_bytes().
