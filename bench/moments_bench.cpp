@@ -1,5 +1,5 @@
 // Verifies the stage `moments`, then times it: against a lattice quadrature at degree 32, and alone up to degree 2048.
-// How to read the output stands in bench/README.md.
+// How to read the output stands in bench/moments.md.
 #include "bench/moments_quadrature.hpp"
 #include "host/backend.hpp"
 #include "host/error.hpp"

@@ -1,5 +1,5 @@
 // Verifies the verbs `synthesise` and `analyse`, then times them against libsharp on the same grid in the same run. How
-// to read the output stands in bench/README.md.
+// to read the output stands in bench/transforms.md.
 #include "host/backend.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"

@@ -12,7 +12,7 @@
 namespace cowgpu::cli {
 namespace {
 
-// Multiply-adds of one recursion entry of a pair, counted as two flops each (bench/README.md).
+// Multiply-adds of one recursion entry of a pair, counted as two flops each (bench/moments.md).
 constexpr double flops_per_element = 60;
 
 struct Options {
