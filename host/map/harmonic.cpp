@@ -197,7 +197,7 @@ SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& op
   map.notes.push_back(fmt::format("the disk was multiplied by {:.6g}{}", scale,
                                   options.disk_scale > 0 ? "" : ", which brings half of the area to each hemisphere"));
   if (options.polish) {
-    const PolishReport report = polish(laplace, areas, x);
+    const PolishReport report = polish(laplace, surface.faces(), areas, x);
     map.notes.push_back(fmt::format("polished in {} steps: the Dirichlet energy over 4 pi fell from {:.9g} to {:.9g}, "
                                     "and the next step would take {:.1e} of it",
                                     report.steps, report.energy_before / (4 * std::numbers::pi),

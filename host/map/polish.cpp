@@ -3,7 +3,8 @@
 #include "host/error.hpp"
 #include "host/map/solve.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,21 +21,42 @@ Eigen::MatrixXd as_matrix(std::span<const Direction> x) {
   return matrix;
 }
 
-// The gradient along the sphere of the energy after centring: centring answers a step d by the Moebius field
-// -2 (1 - x x^T) J^-1 sum(area d), J = 2 sum(area (1 - x x^T)).
-Eigen::MatrixXd gradient(const Eigen::MatrixXd& x, const Eigen::MatrixXd& pull, std::span<const double> areas) {
-  const auto along = [&](Eigen::Index i, const Vec3& v) -> Vec3 { return v - v.dot(x.row(i)) * x.row(i).transpose(); };
-  Eigen::MatrixXd result(x.rows(), 3);
-  Eigen::Matrix3d derivative = Eigen::Matrix3d::Zero();
-  Vec3 sum = Vec3::Zero();
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    const double area = areas[std::size_t(i)];
-    result.row(i) = along(i, pull.row(i));
-    sum += result.row(i);
-    derivative += 2 * area * (Eigen::Matrix3d::Identity() - x.row(i).transpose() * x.row(i));
+// A third of the areas of the chord triangles at each vertex.
+std::vector<double> mapped_areas(const Eigen::MatrixXd& x, std::span<const Face> faces) {
+  std::vector<double> areas(std::size_t(x.rows()), 0);
+  for (const Face& f : faces) {
+    const Vec3 a = x.row(f[0]), b = x.row(f[1]), c = x.row(f[2]);
+    const double third = (b - a).cross(c - a).norm() / 6;
+    for (const std::uint32_t v : f) areas[v] += third;
   }
-  const Vec3 multiplier = 2 * derivative.inverse() * sum;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) result.row(i) -= areas[std::size_t(i)] * along(i, multiplier);
+  return areas;
+}
+
+// The part of L x along the sphere, less what would drive a Moebius transformation or a rotation of the whole: forces
+// proportional to mapped areas, so that the smallest triangles feel the least of them.
+Eigen::MatrixXd imbalance(const Eigen::MatrixXd& x, const Eigen::MatrixXd& pull, std::span<const Face> faces) {
+  const auto areas = mapped_areas(x, faces);
+  using Field = Eigen::Matrix<double, 3, 6>; // the six conformal fields at a point: (1 - x x^T) e_k and e_k x x
+  const auto field = [&](Eigen::Index i) {
+    const Vec3 at = x.row(i);
+    Field f;
+    for (int k = 0; k < 3; ++k) {
+      f.col(k) = Vec3::Unit(k) - at[k] * at;
+      f.col(3 + k) = Vec3::Unit(k).cross(at);
+    }
+    return f;
+  };
+  Eigen::MatrixXd result(x.rows(), 3);
+  Eigen::Matrix<double, 6, 6> resistance = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> drive = Eigen::Matrix<double, 6, 1>::Zero();
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const Field f = field(i);
+    result.row(i) = pull.row(i) - pull.row(i).dot(x.row(i)) * x.row(i);
+    drive += f.transpose() * result.row(i).transpose();
+    resistance += areas[std::size_t(i)] * f.transpose() * f;
+  }
+  const Eigen::Matrix<double, 6, 1> force = resistance.ldlt().solve(drive);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) result.row(i) -= areas[std::size_t(i)] * (field(i) * force).transpose();
   return result;
 }
 
@@ -44,9 +66,9 @@ double inner(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 
 } // namespace
 
-PolishReport polish(const SparseMatrix& laplace, std::span<const double> areas, std::span<Direction> x,
-                    int most_steps) {
-  constexpr double wanted = 1e-13, acceptable = 1e-10;
+PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, std::span<const double> areas,
+                    std::span<Direction> x, int most_steps) {
+  constexpr double wanted = 1e-26, acceptable = 1e-12, longest = 1.2;
   SparseMatrix metric = laplace;
   for (Eigen::Index i = 0; i < metric.cols(); ++i) {
     const double mass = 4 * std::numbers::pi * areas[std::size_t(i)];
@@ -63,26 +85,29 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const double> areas, 
   PolishReport report;
   report.energy = report.energy_before = inner(now, pull) / 2;
   std::vector<Direction> moved(x.size());
-  double length = 1;
-  for (;; ++report.steps) {
-    const Eigen::MatrixXd slope = gradient(now, pull, areas), direction = solver.solve(slope);
-    report.decrement = inner(slope, direction) / report.energy;
-    if (report.decrement <= wanted || report.steps == most_steps) break;
+  Eigen::MatrixXd left = imbalance(now, pull, faces), direction = solver.solve(left, Refinement::none);
+  report.decrement = inner(left, direction) / report.energy;
+  double length = longest;
+  while (report.decrement > wanted && report.steps < most_steps) {
     bool fell = false;
-    for (length = std::min(1.5 * length, 2.0); !fell && length > 1e-4; length *= fell ? 1.0 : 0.5) {
+    for (length = std::min(2 * length, longest); !fell && length > longest / 20; length /= fell ? 1 : 2) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         const Vec3 step = length * direction.row(Eigen::Index(i));
         moved[i] = areas[i] > 0 ? (x[i] - step.cast<long double>()).normalized() : x[i];
       }
       centre(moved, areas);
       const Eigen::MatrixXd next = as_matrix(moved), next_pull = laplace * next;
-      const double energy = inner(next, next_pull) / 2;
-      fell = energy < report.energy;
+      const Eigen::MatrixXd next_left = imbalance(next, next_pull, faces),
+                            next_direction = solver.solve(next_left, Refinement::none);
+      const double energy = inner(next, next_pull) / 2, decrement = inner(next_left, next_direction) / energy;
+      fell = decrement < report.decrement;
       if (!fell) continue;
       std::copy(moved.begin(), moved.end(), x.begin());
       now = next;
-      pull = next_pull;
+      direction = next_direction;
       report.energy = energy;
+      report.decrement = decrement;
+      ++report.steps;
     }
     if (!fell) break;
   }

@@ -20,7 +20,7 @@ struct PolishReport {
 /// (compare X. Gu et al., IEEE Trans. Med. Imaging 23 (2004) 949). `laplace` must be symmetric, `areas` as from
 /// vertex_areas, x the map to start from. Throws Error(map_failed) if the decrement is above 1e-10 after `most_steps`
 /// steps, and what centre() and SymmetricSolver throw.
-PolishReport polish(const SparseMatrix& laplace, std::span<const double> areas, std::span<Direction> x,
-                    int most_steps = 400);
+PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, std::span<const double> areas,
+                    std::span<Direction> x, int most_steps = 400);
 
 } // namespace cowgpu

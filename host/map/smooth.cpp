@@ -5,11 +5,13 @@
 #include "host/map/moebius.hpp"
 #include "host/map/solve.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace cowgpu {
@@ -34,8 +36,8 @@ SparseMatrix mass_matrix(const Eigen::MatrixXd& x, const std::vector<Face>& face
   return mass;
 }
 
-// To area 1 about the centre of mass of the surface; returns how far from round that is.
-double normalise(Eigen::MatrixXd& x, const std::vector<Face>& faces) {
+// To area 1 about the centre of mass of the surface.
+void normalise(Eigen::MatrixXd& x, const std::vector<Face>& faces) {
   Vec3 middle = Vec3::Zero();
   double total = 0;
   for (const Face& f : faces) {
@@ -45,24 +47,55 @@ double normalise(Eigen::MatrixXd& x, const std::vector<Face>& faces) {
   }
   x.rowwise() -= (middle / total).transpose();
   x /= std::sqrt(total);
-  double least = 1e300, most = 0, sum = 0;
-  std::size_t count = 0;
-  for (const Face& f : faces)
+}
+
+// Mean radius, and its root mean square deviation over it, by the areas that x has.
+struct Radii {
+  double mean = 0, deviation = 0;
+};
+
+Radii radii(const Eigen::MatrixXd& x, const std::vector<Face>& faces) {
+  double weight = 0, first = 0, second = 0;
+  for (const Face& f : faces) {
+    const double part = twice_area(x, f);
     for (const std::uint32_t v : f) {
       const double radius = x.row(v).norm();
-      least = std::min(least, radius);
-      most = std::max(most, radius);
-      sum += radius;
-      ++count;
+      weight += part;
+      first += part * radius;
+      second += part * radius * radius;
     }
-  const double mean = sum / double(count);
-  return std::max(most / mean - 1, 1 - least / mean);
+  }
+  const double mean = first / weight;
+  return {mean, std::sqrt(std::max(0.0, second / weight - mean * mean)) / mean};
+}
+
+// Root mean square by area of what a step is besides the Moebius field (1 - y y^T) c, y = x / |x|, that fits it best.
+double movement(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to, std::span<const double> areas) {
+  const auto projector = [&](Eigen::Index i) -> Eigen::Matrix3d {
+    const Vec3 y = to.row(i).normalized();
+    return Eigen::Matrix3d::Identity() - y * y.transpose();
+  };
+  Eigen::Matrix3d resistance = Eigen::Matrix3d::Zero();
+  Vec3 drive = Vec3::Zero();
+  for (Eigen::Index i = 0; i < to.rows(); ++i) {
+    const Eigen::Matrix3d weighted = areas[std::size_t(i)] * projector(i);
+    resistance += weighted;
+    drive += weighted * (to.row(i) - from.row(i)).transpose();
+  }
+  const Vec3 fit = resistance.ldlt().solve(drive);
+  double sum = 0;
+  for (Eigen::Index i = 0; i < to.rows(); ++i) {
+    const Vec3 step = (to.row(i) - from.row(i)).transpose();
+    sum += areas[std::size_t(i)] * (step - projector(i) * fit).squaredNorm();
+  }
+  return std::sqrt(sum);
 }
 
 } // namespace
 
 SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& options) {
-  if (!(options.first_step > 0 && options.largest_step > 0 && options.roundness > 0 && options.most_steps > 0))
+  if (!(options.first_step > 0 && options.largest_step > 0 && options.settled > 0 && options.roundness > 0 &&
+        options.most_steps > 0))
     throw Error(Fault::bad_argument, "the steps, the roundness and the number of steps of smoothing must be positive");
   require_sphere(surface);
   const HalfEdges half_edges(surface);
@@ -76,27 +109,32 @@ SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& option
   Eigen::MatrixXd x(Eigen::Index(surface.vertices().size()), 3);
   for (Eigen::Index i = 0; i < x.rows(); ++i) x.row(i) = surface.vertices()[std::size_t(i)] - surface.vertices()[0];
   x /= x.cwiseAbs().maxCoeff();
-  double off = normalise(x, faces), step = options.first_step;
+  normalise(x, faces);
   std::optional<SymmetricSolver> solver;
+  double step = options.first_step, moved = std::numeric_limits<double>::infinity();
+  Radii now;
   int steps = 0;
-  for (; steps < options.most_steps && !(off <= options.roundness); ++steps) {
+  for (; steps < options.most_steps && !(moved <= options.settled * now.mean); ++steps) {
     const SparseMatrix mass = mass_matrix(x, faces, laplace);
     SparseMatrix system = mass + step * laplace;
     if (solver)
       solver->factorise(std::move(system));
     else
       solver.emplace(std::move(system), "the system of the mean-curvature flow");
-    x = solver->solve(mass * x);
-    off = normalise(x, faces);
+    Eigen::MatrixXd next = solver->solve(mass * x);
+    normalise(next, faces);
+    // Short steps move little without being near the end.
+    moved = movement(x, next, areas) * std::max(1.0, options.largest_step / step);
+    x = std::move(next);
+    now = radii(x, faces);
     step = std::min(2 * step, options.largest_step);
   }
-  if (!(off <= options.roundness))
-    throw Error(
-        Fault::map_failed,
-        fmt::format("the mean-curvature flow did not become a sphere: after {} steps radii differ by {:.1e} of "
-                    "their mean, where {:.1e} is asked; allow more steps or less roundness, or take the harmonic "
-                    "map",
-                    steps, off, options.roundness));
+  if (!(moved <= options.settled * now.mean && now.deviation <= options.roundness))
+    throw Error(Fault::map_failed,
+                fmt::format("the mean-curvature flow did not become a sphere: after {} steps it moves by {:.1e} of the "
+                            "mean radius a step (asked for: {:.1e}), and radii differ by {:.1e} (asked for: {:.1e}); "
+                            "allow more, or take the harmonic map",
+                            steps, moved / now.mean, options.settled, now.deviation, options.roundness));
 
   std::vector<Direction> directions(surface.vertices().size(), Direction::Zero());
   for (std::uint32_t v = 0; v < directions.size(); ++v)
@@ -104,8 +142,9 @@ SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& option
       directions[v] = Direction(x.row(v).transpose().cast<long double>()).normalized();
   SphereMap map;
   map.method = "smooth";
-  map.notes.push_back(
-      fmt::format("mean-curvature flow became a sphere in {} steps: radii differ by {:.1e} of their mean", steps, off));
+  map.notes.push_back(fmt::format("mean-curvature flow settled in {} steps (the last moved {:.1e}) to a sphere whose "
+                                  "radii differ by {:.1e} of their mean",
+                                  steps, moved / now.mean, now.deviation));
   map.notes.push_back(fmt::format("centred by a Moebius transformation in {} steps", centre(directions, areas)));
   if (options.align) {
     align(directions, areas, surface.vertices());

@@ -138,15 +138,14 @@ void SymmetricSolver::factorise(SparseMatrix matrix) {
                   s.what, s.matrix.cols()));
 }
 
-Eigen::MatrixXd SymmetricSolver::solve(const Eigen::MatrixXd& right) const {
+Eigen::MatrixXd SymmetricSolver::solve(const Eigen::MatrixXd& right, Refinement refinement) {
   State& s = *state_;
-  return refined(
-      s.matrix, right, s.what,
-      [&](const Eigen::MatrixXd& b) -> Eigen::MatrixXd {
-        if (b.rows() == 0) return b;
-        return s.order.inverse() * Eigen::MatrixXd(s.factor.solve(Eigen::MatrixXd(s.order * b)));
-      },
-      s.residual);
+  const auto plain = [&](const Eigen::MatrixXd& b) -> Eigen::MatrixXd {
+    if (b.rows() == 0) return b;
+    return s.order.inverse() * Eigen::MatrixXd(s.factor.solve(Eigen::MatrixXd(s.order * b)));
+  };
+  if (refinement == Refinement::none) return plain(right);
+  return refined(s.matrix, right, s.what, plain, s.residual);
 }
 
 double SymmetricSolver::residual() const {

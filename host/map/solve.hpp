@@ -16,6 +16,11 @@ enum class Ordering {
 
 inline constexpr std::size_t nested_dissection_from = 300000;
 
+enum class Refinement {
+  one_step, ///< and a check of the residual
+  none,     ///< for corrections in an iteration that corrects itself
+};
+
 /// An LDL^T factorisation of a symmetric positive definite matrix, to be used for many right sides, and for several
 /// matrices of one pattern.
 class SymmetricSolver {
@@ -29,11 +34,11 @@ public:
   /// Takes another matrix of the same pattern, and keeps the ordering.
   void factorise(SparseMatrix matrix);
 
-  /// X with A X = B, with one step of iterative refinement. Throws Error(map_failed) if the residual is larger than
+  /// X with A X = B. Refined, it throws Error(map_failed) if the residual is larger than
   /// residual_limit.
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right, Refinement refinement = Refinement::one_step);
 
-  /// The largest |B - A X| / (|A| |X| + |B|), entry by entry, of the last solve: 1e-16 is rounding.
+  /// The largest |B - A X| / (|A| |X| + |B|), entry by entry, of the last refined solve: 1e-16 is rounding.
   double residual() const;
   Ordering ordering() const;
   std::size_t factor_size() const; ///< entries below the diagonal
