@@ -51,29 +51,32 @@ std::array<double, n> quantiles(std::vector<Weighted> values, const std::array<d
   return result;
 }
 
-// A triangle of the surface, relative to its first corner.
+// A triangle, relative to its first corner.
 struct Shape {
   Vec3 first, second;
   double twice_area;
 };
 
-Shape shape(const ManifoldSurface& surface, const Face& f) {
-  const auto& v = surface.vertices();
-  Shape s{v[f[1]] - v[f[0]], v[f[2]] - v[f[0]], 0};
+Shape shape(const Vec3& a, const Vec3& b, const Vec3& c) {
+  Shape s{b - a, c - a, 0};
   s.twice_area = s.first.cross(s.second).norm();
   return s;
 }
 
-// Ratio of the singular values: their sum of squares over their product is t, and the ratio r + 1/r = t.
-double shear(const Shape& from, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 first = b - a, second = c - a;
-  const double area = first.cross(second).norm();
-  if (!(area > 0)) return std::numeric_limits<double>::infinity();
-  const double squares = from.first.squaredNorm() * second.squaredNorm() +
-                         from.second.squaredNorm() * first.squaredNorm() -
-                         2 * from.first.dot(from.second) * first.dot(second);
-  const double t = squares / (from.twice_area * area);
-  return t > 2 ? (t + std::sqrt((t - 2) * (t + 2))) / 2 : 1;
+Shape shape(const ManifoldSurface& surface, const Face& f) {
+  const auto& v = surface.vertices();
+  return shape(v[f[0]], v[f[1]], v[f[2]]);
+}
+
+// Ratio of the singular values of the map from one triangle to another, from its similar and its anti-similar part, in
+// frames whose first axes run along the first sides: nothing cancels where they are similar.
+double shear(const Shape& from, const Shape& to) {
+  if (!(to.twice_area > 0)) return std::numeric_limits<double>::infinity();
+  const double base = from.first.norm(), image = to.first.norm(), stretch = image / base;
+  const double across = (to.first.dot(to.second) / image - stretch * (from.first.dot(from.second) / base)) * base;
+  const double upper = across / from.twice_area, lower = to.twice_area / image * (base / from.twice_area);
+  const double largest = (std::hypot(stretch + lower, upper) + std::hypot(stretch - lower, upper)) / 2;
+  return largest * largest / (stretch * lower);
 }
 
 // The connected sets of the marked faces, largest area first.
@@ -185,7 +188,8 @@ MapQuality judge(const ManifoldSurface& surface, const SphereMap& map, int lmax)
   std::vector<Weighted> ratio, sheared;
   ratio.reserve(faces.size());
   sheared.reserve(faces.size());
-  double total = 0, low_area = 0, sum = 0;
+  double total = 0, low_area = 0;
+  long double sum = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const Vec3 &a = corner(f, 0), &b = corner(f, 1), &c = corner(f, 2);
     const Shape on_surface = shape(surface, faces[f]);
@@ -208,9 +212,9 @@ MapQuality judge(const ManifoldSurface& surface, const SphereMap& map, int lmax)
     }
     if (!(area > 0)) continue;
     ratio.push_back({std::abs(angle[f]) / area, area});
-    sheared.push_back({shear(on_surface, a, b, c), area});
+    sheared.push_back({shear(on_surface, shape(a, b, c)), area});
   }
-  q.degree = sum / sphere;
+  q.degree = double(sum / sphere);
   q.inside_out = q.degree < 0;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const int sign = orientation(corner(f, 0), corner(f, 1), corner(f, 2));

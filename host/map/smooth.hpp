@@ -13,7 +13,7 @@ struct SmoothOptions {
   /// square by area): those go on for ever on a mesh, and centring takes them out.
   double settled = 1e-4;
   /// Then radii may differ by this part of their mean (root mean square by area). A mesh ends as round as its size allows.
-  double roundness = 0.1;
+  double roundness = 0.3;
   int most_steps = 200;
   bool align = true; ///< as in HarmonicOptions
 };
