@@ -198,10 +198,11 @@ SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& op
                                   options.disk_scale > 0 ? "" : ", which brings half of the area to each hemisphere"));
   if (options.polish) {
     const PolishReport report = polish(laplace, surface.faces(), areas, x);
-    map.notes.push_back(fmt::format("polished in {} steps: the Dirichlet energy over 4 pi fell from {:.9g} to {:.9g}, "
-                                    "and the next step would take {:.1e} of it",
-                                    report.steps, report.energy_before / (4 * std::numbers::pi),
-                                    report.energy / (4 * std::numbers::pi), report.decrement));
+    map.notes.push_back(fmt::format("polished in {} steps to a relative imbalance of {:.1e}: the Dirichlet energy over "
+                                    "4 pi went from {:.9g} to {:.9g}",
+                                    report.steps, std::sqrt(report.decrement),
+                                    report.energy_before / (4 * std::numbers::pi),
+                                    report.energy / (4 * std::numbers::pi)));
   } else if (options.centre)
     map.notes.push_back(fmt::format("centred by a Moebius transformation in {} steps", centre(x, areas)));
   if (options.align) {

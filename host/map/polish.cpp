@@ -81,11 +81,11 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, st
   SymmetricSolver solver(std::move(metric), "the system of the harmonic map to the sphere");
 
   centre(x, areas);
-  Eigen::MatrixXd now = as_matrix(x), pull = laplace * now;
+  const Eigen::MatrixXd start = as_matrix(x), pull = laplace * start;
   PolishReport report;
-  report.energy = report.energy_before = inner(now, pull) / 2;
+  report.energy = report.energy_before = inner(start, pull) / 2;
   std::vector<Direction> moved(x.size());
-  Eigen::MatrixXd left = imbalance(now, pull, faces), direction = solver.solve(left, Refinement::none);
+  Eigen::MatrixXd left = imbalance(start, pull, faces), direction = solver.solve(left, Refinement::none);
   report.decrement = inner(left, direction) / report.energy;
   double length = longest;
   while (report.decrement > wanted && report.steps < most_steps) {
@@ -93,7 +93,7 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, st
     for (length = std::min(2 * length, longest); !fell && length > longest / 20; length /= fell ? 1 : 2) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         const Vec3 step = length * direction.row(Eigen::Index(i));
-        moved[i] = areas[i] > 0 ? (x[i] - step.cast<long double>()).normalized() : x[i];
+        moved[i] = x[i].squaredNorm() > 0 ? (x[i] - step.cast<long double>()).normalized() : x[i];
       }
       centre(moved, areas);
       const Eigen::MatrixXd next = as_matrix(moved), next_pull = laplace * next;
@@ -103,7 +103,6 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, st
       fell = decrement < report.decrement;
       if (!fell) continue;
       std::copy(moved.begin(), moved.end(), x.begin());
-      now = next;
       direction = next_direction;
       report.energy = energy;
       report.decrement = decrement;
@@ -112,11 +111,12 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, st
     if (!fell) break;
   }
   if (!(report.decrement <= acceptable))
-    throw Error(Fault::map_failed,
-                fmt::format("the energy of the map to the sphere still falls after {} steps ({:.1e} of it a step): the "
-                            "surface has triangles too thin for its weights; take the map without polish, or the "
-                            "stretch map",
-                            report.steps, report.decrement));
+    throw Error(
+        Fault::map_failed,
+        fmt::format("the polish of the map to the sphere stopped after {} steps at a relative imbalance of {:.1e}, "
+                    "where 1e-6 is asked: the surface has triangles too thin for its weights; take the map "
+                    "without polish, or the stretch map",
+                    report.steps, std::sqrt(report.decrement)));
   return report;
 }
 

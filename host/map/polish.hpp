@@ -11,15 +11,22 @@ namespace cowgpu {
 
 struct PolishReport {
   int steps = 0;
-  double energy_before = 0, energy = 0; ///< near 4 pi; less is left of coarse meshes, whose triangles are chords
-  double decrement = 0; ///< what the next step would have taken off the energy, to first order, relative to it
+  /// sum over edges of w_ij |x_i - x_j|^2 / 2: near 4 pi, and less on coarse meshes, whose triangles are chords.
+  double energy_before = 0, energy = 0;
+  /// Squared size of the imbalance that is left, in the inverse metric, over the energy: its root is about the relative
+  /// error of the positions.
+  double decrement = 0;
 };
 
-/// Minimises the Dirichlet energy sum over edges of w_ij |x_i - x_j|^2 / 2 among maps to the unit sphere whose mean by
-/// area is zero: descent along the gradient in the metric L + M, with backtracking; each step is followed by centring
-/// (compare X. Gu et al., IEEE Trans. Med. Imaging 23 (2004) 949). `laplace` must be symmetric, `areas` as from
-/// vertex_areas, x the map to start from. Throws Error(map_failed) if the decrement is above 1e-10 after `most_steps`
-/// steps, and what centre() and SymmetricSolver throw.
+/// From x to the map to the unit sphere that is harmonic everywhere, with its mean by area at zero: (L x)_i has no part
+/// along the sphere but one that holds the map against Moebius transformations, which a mesh does not quite allow. That
+/// part is taken proportional to the areas on the sphere. (Proportional to the areas on the surface, as minimising the
+/// energy at fixed mean would have it, it draws shrunken limbs out into threads.) Steps of (L + M)^-1 times the
+/// imbalance, M the mass matrix, each followed by centring; shorter ones where the imbalance does not fall (compare
+/// X. Gu et al., IEEE Trans. Med. Imaging 23 (2004) 949).
+///
+/// `laplace` must be symmetric, `areas` as from vertex_areas. Throws Error(map_failed) if the decrement stays above
+/// 1e-12, and what centre() and SymmetricSolver throw.
 PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, std::span<const double> areas,
                     std::span<Direction> x, int most_steps = 400);
 
