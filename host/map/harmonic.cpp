@@ -112,7 +112,7 @@ Disk harmonic_disk(const ManifoldSurface& surface, const HalfEdges& half_edges, 
   if (weights == EdgeWeights::mean_value) {
     solution = solve_general(matrix, right, what, &disk.residual);
   } else {
-    SymmetricSolver solver(std::move(matrix), what);
+    SymmetricSolver solver(matrix, what);
     solution = solver.solve(right);
     disk.residual = solver.residual();
   }

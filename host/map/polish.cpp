@@ -78,7 +78,7 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, st
       metric.insert(i, i) = 1; // a vertex of no face
   }
   metric.makeCompressed();
-  SymmetricSolver solver(std::move(metric), "the system of the harmonic map to the sphere");
+  SymmetricSolver solver(metric, "the system of the harmonic map to the sphere");
 
   centre(x, areas);
   const Eigen::MatrixXd start = as_matrix(x), pull = laplace * start;

@@ -119,11 +119,11 @@ SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& option
   int steps = 0;
   for (; steps < options.most_steps && !(moved <= options.settled * now.mean); ++steps) {
     const SparseMatrix mass = mass_matrix(x, faces, laplace);
-    SparseMatrix system = mass + step * laplace;
+    const SparseMatrix system = mass + step * laplace;
     if (solver)
-      solver->factorise(std::move(system));
+      solver->factorise(system);
     else
-      solver.emplace(std::move(system), "the system of the mean-curvature flow",
+      solver.emplace(system, "the system of the mean-curvature flow",
                      std::size_t(x.rows()) < nested_dissection_from_here ? Ordering::minimum_degree
                                                                          : Ordering::nested_dissection);
     Eigen::MatrixXd next = solver->solve(mass * x);

@@ -100,7 +100,7 @@ struct SymmetricSolver::State {
   double residual = 0;
 };
 
-SymmetricSolver::SymmetricSolver(SparseMatrix matrix, std::string what, Ordering ordering)
+SymmetricSolver::SymmetricSolver(const SparseMatrix& matrix, std::string what, Ordering ordering)
     : state_(std::make_unique<State>()) {
   if (ordering == Ordering::automatic)
     ordering =
@@ -113,15 +113,15 @@ SymmetricSolver::SymmetricSolver(SparseMatrix matrix, std::string what, Ordering
   SparseMatrix permuted(matrix.rows(), matrix.cols());
   permuted.selfadjointView<Eigen::Upper>() = matrix.selfadjointView<Eigen::Upper>().twistedBy(state_->order);
   state_->factor.analyzePattern(permuted);
-  factorise(std::move(matrix));
+  factorise(matrix);
 }
 
 SymmetricSolver::~SymmetricSolver() = default;
 SymmetricSolver::SymmetricSolver(SymmetricSolver&&) noexcept = default;
 
-void SymmetricSolver::factorise(SparseMatrix matrix) {
+void SymmetricSolver::factorise(const SparseMatrix& matrix) {
   State& s = *state_;
-  s.matrix = std::move(matrix);
+  s.matrix = matrix;
   SparseMatrix permuted(s.matrix.rows(), s.matrix.cols());
   permuted.selfadjointView<Eigen::Upper>() = s.matrix.selfadjointView<Eigen::Upper>().twistedBy(s.order);
   s.factor.factorize(permuted);

@@ -28,12 +28,12 @@ class SymmetricSolver {
 public:
   /// Orders and factorises. Both triangles of `matrix` must be there. `what` names the system in errors ("the harmonic
   /// system"). Throws Error(map_failed) if a pivot is not positive or not finite.
-  explicit SymmetricSolver(SparseMatrix matrix, std::string what, Ordering ordering = Ordering::automatic);
+  explicit SymmetricSolver(const SparseMatrix& matrix, std::string what, Ordering ordering = Ordering::automatic);
   ~SymmetricSolver();
   SymmetricSolver(SymmetricSolver&&) noexcept;
 
   /// Takes another matrix of the same pattern, and keeps the ordering.
-  void factorise(SparseMatrix matrix);
+  void factorise(const SparseMatrix& matrix);
 
   /// X with A X = B. Refined, it throws Error(map_failed) if the residual is larger than
   /// residual_limit.
