@@ -1,0 +1,20 @@
+// On which side of a plane through the origin a point lies, exactly.
+#pragma once
+
+#include "host/types.hpp"
+
+namespace cowgpu {
+
+/// The sign of det(a, b, c) = a . (b x c): 1, 0 or -1. On the unit sphere it is 1 if the triangle a, b, c runs
+/// counter-clockwise seen from outside, -1 if clockwise, 0 if some great circle passes through all three corners.
+///
+/// Exact for all finite doubles, subnormal ones included: a forward error bound decides nearly always, and where it
+/// cannot, the six products are added as integers (as in J. R. Shewchuk, Discrete Comput. Geom. 18 (1997) 305, but with
+/// a fixed-point sum in place of expansions, so that nothing underflows). Antisymmetric in its arguments. Expects the
+/// rounding and subnormal numbers of IEEE 754 (not inside FlushDenormals).
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The same without the error bound: always by integers, some six times slower.
+int orientation_exact(const Vec3& a, const Vec3& b, const Vec3& c);
+
+} // namespace cowgpu
