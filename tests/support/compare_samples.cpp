@@ -1,0 +1,188 @@
+#include "tests/support/compare_samples.hpp"
+
+#include "host/error.hpp"
+#include "host/reference/sample.hpp"
+#include "tests/support/meshes.hpp"
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+namespace cowgpu::test {
+namespace {
+
+MappedMesh from(std::string name, const RawMesh& mesh) {
+  MappedMesh map{std::move(name), mesh.vertices, mesh.faces};
+  for (Vec3& p : map.positions) p.normalize();
+  return map;
+}
+
+Vec3 random_vector(std::mt19937& random) {
+  const auto uniform = [&] { return double(random()) / 2147483648.0 - 1; };
+  for (;;) {
+    const double x = uniform(), y = uniform(), z = uniform();
+    const Vec3 v(x, y, z);
+    if (v.norm() < 1 && v.norm() > 0.1) return v;
+  }
+}
+
+} // namespace
+
+MappedMesh identity_map(int level) {
+  return from("identity " + std::to_string(level), icosphere(level));
+}
+
+MappedMesh rotated_map(int level, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const Vec3 axis = random_vector(random);
+  return from("rotated " + std::to_string(level),
+              rotated(icosphere(level), Eigen::AngleAxisd(3 * axis.norm(), axis.normalized()).toRotationMatrix()));
+}
+
+MappedMesh warped_map(int level, double size, std::uint32_t seed) {
+  MappedMesh map = rotated_map(level, seed);
+  map.name = "warped " + std::to_string(level) + " by " + std::to_string(size);
+  std::mt19937 random(seed + 1);
+  for (Vec3& p : map.positions) p = (p + size * random_vector(random)).normalized();
+  return map;
+}
+
+MappedMesh crowded_map(int level, double rest) {
+  MappedMesh map = rotated_map(level, 3);
+  map.name = "crowded " + std::to_string(level) + " to " + std::to_string(rest);
+  const Vec3 c = (1 - rest) * Vec3(0.36, -0.48, 0.8);
+  for (Vec3& p : map.positions) p = ((1 - c.squaredNorm()) * (p + c) / (p + c).squaredNorm() + c).normalized();
+  return map;
+}
+
+MappedMesh random_map(int level, std::uint32_t seed) {
+  MappedMesh map = identity_map(level);
+  map.name = "random " + std::to_string(level);
+  std::mt19937 random(seed);
+  for (Vec3& p : map.positions) p = random_vector(random).normalized();
+  return map;
+}
+
+MappedMesh tetrahedron_map() {
+  return from("tetrahedron",
+              tetrahedron(Vec3(0.3, 0.1, 1), Vec3(1, 0.2, -0.4), Vec3(-0.5, 1, -0.3), Vec3(-0.4, -0.9, -0.5)));
+}
+
+MappedMesh octahedron_map() {
+  return {"octahedron",
+          {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+          {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}}};
+}
+
+MappedMesh flat_triangle_map() {
+  MappedMesh map = octahedron_map();
+  map.name = "octahedron with a flat triangle";
+  map.positions.push_back(Vec3(1, 1, 0).normalized());
+  map.faces[0] = {0, 6, 2};
+  map.faces.push_back({6, 1, 2});
+  map.faces.push_back({0, 1, 6});
+  return map;
+}
+
+MappedMesh grid_map(const SphereGrid& grid) {
+  MappedMesh map;
+  map.name = "grid " + std::string(name(grid.kind)) + " " + std::to_string(grid.lmax);
+  const SphereDirections directions(grid);
+  const auto n = std::uint32_t(grid.ring_length);
+  std::uint32_t rings = 0;
+  map.positions = {Vec3(0, 0, 1), Vec3(0, 0, -1)};
+  for (int i = 0; i < grid.rings; ++i) {
+    if (directions.sine[std::size_t(i)] == 0) continue;
+    for (int j = 0; j < grid.ring_length; ++j) map.positions.push_back(directions(i, j));
+    ++rings;
+  }
+  const auto at = [&](std::uint32_t ring, std::uint32_t j) { return 2 + ring * n + j % n; };
+  for (std::uint32_t j = 0; j < n; ++j) {
+    map.faces.push_back({0, at(0, j), at(0, j + 1)});
+    map.faces.push_back({1, at(rings - 1, j + 1), at(rings - 1, j)});
+    for (std::uint32_t i = 0; i + 1 < rings; ++i) {
+      map.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      map.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return map;
+}
+
+SphereSamples sample(Backend& backend, const MappedMesh& map, const SphereGrid& grid, RunReport* report) {
+  Monitor silent;
+  return backend.sample(map.positions, map.faces, grid, silent, report);
+}
+
+void compare_samples(Paths& paths, const MappedMesh& map, const SphereGrid& grid, double figure) {
+  using Rational = boost::multiprecision::cpp_rational;
+  INFO(map.name << " on a " << name(grid.kind) << " grid of " << grid.rings << " rings of " << grid.ring_length);
+  const SphereDirections directions(grid);
+  std::vector<reference::Sample> truth;
+  SphereSamples counts;
+  std::set<std::uint32_t> hit;
+  bool open = false;
+  for (int i = 0; i < grid.rings; ++i)
+    for (int j = 0; j < grid.ring_length; ++j) {
+      truth.push_back(reference::sample<Rational>(map.positions, map.faces, directions(i, j)));
+      open = open || truth.back().face == reference::no_face;
+      counts.folded_points += truth.back().inside > 1;
+      counts.edge_points += truth.back().edge;
+      counts.flipped_points += truth.back().flipped;
+      hit.insert(truth.back().face);
+    }
+  for (const Face& f : map.faces) {
+    const int sign =
+        reference::determinant_sign<Rational>(map.positions[f[0]], map.positions[f[1]], map.positions[f[2]]);
+    counts.flipped_faces += sign < 0;
+    counts.flat_faces += sign == 0;
+  }
+  SphereSamples first;
+  paths.each([&](Backend& backend) {
+    INFO(backend.facts().type);
+    if (open) {
+      try {
+        sample(backend, map, grid);
+        FAIL("a direction is open, but the map was not refused");
+      } catch (const Error& error) {
+        CHECK(error.fault() == Fault::map_failed);
+      }
+      return;
+    }
+    const SphereSamples found = sample(backend, map, grid);
+    REQUIRE(found.points() == truth.size());
+    REQUIRE(found.weights.size() == truth.size());
+    CHECK(found.rings == grid.rings);
+    CHECK(found.ring_length == grid.ring_length);
+    std::size_t wrong = 0;
+    double error = 0;
+    for (std::size_t p = 0; p < truth.size(); ++p) {
+      wrong += found.faces[p] != truth[p].face;
+      double sum = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double apart = std::abs(found.weights[p][k] - truth[p].weights[k]);
+        if (!(apart <= error)) error = apart;
+        if (!(found.weights[p][k] >= 0)) error = INFINITY;
+        sum += found.weights[p][k];
+      }
+      if (!(std::abs(sum - 1) <= 4e-16)) error = INFINITY;
+    }
+    CHECK(wrong == 0);
+    check_at_most(error, figure, "weights");
+    CHECK(found.faces_hit == hit.size());
+    CHECK(found.folded_points == counts.folded_points);
+    CHECK(found.edge_points == counts.edge_points);
+    CHECK(found.flipped_points == counts.flipped_points);
+    CHECK(found.flipped_faces == counts.flipped_faces);
+    CHECK(found.flat_faces == counts.flat_faces);
+    if (first.faces.empty())
+      first = found;
+    else
+      CHECK(found.weights == first.weights);
+  });
+}
+
+} // namespace cowgpu::test

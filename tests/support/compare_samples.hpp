@@ -1,0 +1,42 @@
+// One call that holds every path of the stage `sample` against the reference, and maps to sample.
+#pragma once
+
+#include "host/backend.hpp"
+#include "tests/support/compare_moments.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cowgpu::test {
+
+/// Where the vertices of a mesh go on the sphere.
+struct MappedMesh {
+  std::string name;
+  std::vector<Vec3> positions; ///< unit vectors
+  std::vector<Face> faces;
+};
+
+MappedMesh identity_map(int level); ///< an icosphere as it is
+MappedMesh rotated_map(int level, std::uint32_t seed);
+/// Each vertex moved by at most `size` at random; flip-free while that is below a quarter of an edge.
+MappedMesh warped_map(int level, double size, std::uint32_t seed);
+/// A Moebius transformation that crowds all but a cap: 1 - `rest` of the way to the boundary of the ball.
+MappedMesh crowded_map(int level, double rest);
+/// Vertices anywhere on the sphere.
+MappedMesh random_map(int level, std::uint32_t seed);
+MappedMesh tetrahedron_map();
+MappedMesh octahedron_map(); ///< corners on the axes
+/// The octahedron with the middle of an edge as a vertex of one of its two faces, and a flat triangle in between.
+MappedMesh flat_triangle_map();
+/// A triangulation whose vertices are the points of this grid, with the poles put in where there are none.
+MappedMesh grid_map(const SphereGrid& grid);
+
+/// Without anybody watching.
+SphereSamples sample(Backend& backend, const MappedMesh& map, const SphereGrid& grid, RunReport* report = nullptr);
+
+/// Asks that faces and counts are the reference's on every path, weights within `figure` of it, and that all paths have
+/// the same bits; or that every path refuses a map that leaves a direction open.
+void compare_samples(Paths& paths, const MappedMesh& map, const SphereGrid& grid, double figure);
+
+} // namespace cowgpu::test
