@@ -23,12 +23,12 @@ Number determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
   return sum;
 }
 
-/// The sign of det(a, b, c) of vectors no longer than 2, exact where Number is; a hundred times the rounding error
+/// The sign of det(a, b, c) of vectors no longer than 2, exact where Number is; what is ten times the rounding error
 /// decides at once.
 template <class Number>
 int determinant_sign(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double quick = determinant<double>(a, b, c);
-  if (std::abs(quick) > 1e-12) return quick > 0 ? 1 : -1;
+  if (std::abs(quick) > 1e-14) return quick > 0 ? 1 : -1;
   const Number exact = determinant<Number>(a, b, c);
   return exact > Number(0) ? 1 : exact < Number(0) ? -1 : 0;
 }
@@ -44,35 +44,52 @@ struct Sample {
   std::array<double, 3> weights{}; ///< barycentric coordinates of the face's corners, rounded once
 };
 
-/// Number: exact for sums of products of three doubles, such as a rational.
+/// A map, to be asked for one direction after the other. Number: exact for sums of products of three doubles, such as a
+/// rational.
 template <class Number>
-Sample sample(std::span<const Vec3> positions, std::span<const Face> faces, const Vec3& d) {
-  Sample best;
-  for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    const Vec3 &a = positions[faces[f][0]], &b = positions[faces[f][1]], &c = positions[faces[f][2]];
-    const int sign = determinant_sign<Number>(a, b, c);
-    if (sign == 0) continue;
-    const int u = sign * determinant_sign<Number>(d, b, c);
-    if (u < 0) continue;
-    const int v = sign * determinant_sign<Number>(d, c, a);
-    if (v < 0) continue;
-    const int w = sign * determinant_sign<Number>(d, a, b);
-    if (w < 0) continue;
-    const bool edge = u == 0 || v == 0 || w == 0;
-    if (!edge) ++best.inside;
-    if (best.face != no_face && !(best.flipped && sign > 0)) continue;
-    best.face = f;
-    best.flipped = sign < 0;
-    best.edge = edge;
+class Sampler {
+public:
+  /// Keeps references to both.
+  Sampler(std::span<const Vec3> positions, std::span<const Face> faces) : positions_(positions), faces_(faces) {
+    for (const Face& f : faces)
+      signs_.push_back(determinant_sign<Number>(positions[f[0]], positions[f[1]], positions[f[2]]));
   }
-  if (best.face == no_face) return best;
-  const Vec3 &a = positions[faces[best.face][0]], &b = positions[faces[best.face][1]],
-             &c = positions[faces[best.face][2]];
-  const Number u = determinant<Number>(d, b, c), v = determinant<Number>(d, c, a), w = determinant<Number>(d, a, b);
-  const Number sum = u + v + w;
-  best.weights = {static_cast<double>(Number(u / sum)), static_cast<double>(Number(v / sum)),
-                  static_cast<double>(Number(w / sum))};
-  return best;
-}
+
+  /// Signs of det(a, b, c), one a face.
+  const std::vector<int>& signs() const { return signs_; }
+
+  Sample operator()(const Vec3& d) const {
+    Sample best;
+    for (std::uint32_t f = 0; f < faces_.size(); ++f) {
+      const Vec3 &a = positions_[faces_[f][0]], &b = positions_[faces_[f][1]], &c = positions_[faces_[f][2]];
+      if (signs_[f] == 0) continue;
+      const int u = signs_[f] * determinant_sign<Number>(d, b, c);
+      if (u < 0) continue;
+      const int v = signs_[f] * determinant_sign<Number>(d, c, a);
+      if (v < 0) continue;
+      const int w = signs_[f] * determinant_sign<Number>(d, a, b);
+      if (w < 0) continue;
+      const bool edge = u == 0 || v == 0 || w == 0;
+      if (!edge) ++best.inside;
+      if (best.face != no_face && !(best.flipped && signs_[f] > 0)) continue;
+      best.face = f;
+      best.flipped = signs_[f] < 0;
+      best.edge = edge;
+    }
+    if (best.face == no_face) return best;
+    const Face& face = faces_[best.face];
+    const Vec3 &a = positions_[face[0]], &b = positions_[face[1]], &c = positions_[face[2]];
+    const Number u = determinant<Number>(d, b, c), v = determinant<Number>(d, c, a), w = determinant<Number>(d, a, b);
+    const Number sum = u + v + w;
+    best.weights = {static_cast<double>(Number(u / sum)), static_cast<double>(Number(v / sum)),
+                    static_cast<double>(Number(w / sum))};
+    return best;
+  }
+
+private:
+  std::span<const Vec3> positions_;
+  std::span<const Face> faces_;
+  std::vector<int> signs_;
+};
 
 } // namespace cowgpu::reference

@@ -21,8 +21,8 @@ MappedMesh identity_map(int level); ///< an icosphere as it is
 MappedMesh rotated_map(int level, std::uint32_t seed);
 /// Each vertex moved by at most `size` at random; flip-free while that is below a quarter of an edge.
 MappedMesh warped_map(int level, double size, std::uint32_t seed);
-/// A Moebius transformation that crowds all but a cap: 1 - `rest` of the way to the boundary of the ball.
-MappedMesh crowded_map(int level, double rest);
+/// Angles below 60 degrees from a place, as shares of 60 degrees, raised to this power: triangles as small as doubles have.
+MappedMesh crowded_map(int level, double power);
 /// Vertices anywhere on the sphere.
 MappedMesh random_map(int level, std::uint32_t seed);
 MappedMesh tetrahedron_map();
@@ -36,7 +36,7 @@ MappedMesh grid_map(const SphereGrid& grid);
 SphereSamples sample(Backend& backend, const MappedMesh& map, const SphereGrid& grid, RunReport* report = nullptr);
 
 /// Asks that faces and counts are the reference's on every path, weights within `figure` of it, and that all paths have
-/// the same bits; or that every path refuses a map that leaves a direction open.
-void compare_samples(Paths& paths, const MappedMesh& map, const SphereGrid& grid, double figure);
+/// the same bits; or that every path refuses a map that leaves a direction open. Returns whether none is open.
+bool compare_samples(Paths& paths, const MappedMesh& map, const SphereGrid& grid, double figure);
 
 } // namespace cowgpu::test
