@@ -62,7 +62,8 @@ public:
     fmt::print("Benchmark of sampling, {:%Y-%m-%dT%H:%M:%SZ}\n", fmt::gmtime(std::time(nullptr)));
     for (const Path& path : paths_) {
       const DeviceFacts& facts = path.backend->facts();
-      fmt::print("{:<8} {}; {}; {}; {} threads\n", path.name, facts.name, facts.driver, facts.api, facts.threads);
+      fmt::print("{:<8} {}; {}; {}{}\n", path.name, facts.name, facts.driver, facts.api,
+                 facts.type == "cpu" ? fmt::format("; {} threads", facts.threads) : "");
     }
     fmt::print("Times are medians (and the shortest) of {} calls in milliseconds; the paths take turns.\n",
                options_.runs);

@@ -39,7 +39,27 @@ Weights closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 struct Ball {
   Vec3 centre;
   double radius;
+
+  // Whether a point of it may be within `reach` of p.
+  bool near(const Vec3& p, double reach) const {
+    const double limit = (reach + radius) * (1 + 1e-12);
+    return (p - centre).squaredNorm() <= limit * limit;
+  }
 };
+
+// Balls round each sixteen balls in turn: neighbours in a mesh mostly stand together.
+constexpr std::size_t group = 16;
+std::vector<Ball> grouped(std::span<const Ball> balls) {
+  std::vector<Ball> groups;
+  for (std::size_t first = 0; first < balls.size(); first += group) {
+    const auto part = balls.subspan(first, std::min(group, balls.size() - first));
+    Ball ball{Vec3::Zero(), 0};
+    for (const Ball& b : part) ball.centre += b.centre / double(part.size());
+    for (const Ball& b : part) ball.radius = std::max(ball.radius, (b.centre - ball.centre).norm() + b.radius);
+    groups.push_back(ball);
+  }
+  return groups;
+}
 
 } // namespace
 
@@ -63,6 +83,7 @@ SphereSamples closest_samples(std::span<const Vec3> positions, std::span<const F
     result.flipped_faces += sign < 0;
     result.flat_faces += sign == 0;
   }
+  const std::vector<Ball> groups = grouped(balls);
   result.rings = grid.rings;
   result.ring_length = grid.ring_length;
   result.faces.resize(grid.points());
@@ -87,11 +108,13 @@ SphereSamples closest_samples(std::span<const Vec3> positions, std::span<const F
       };
       look(near);
       double reach = std::sqrt(least);
-      for (std::uint32_t f = 0; f < faces.size(); ++f) {
-        const double limit = reach + balls[f].radius;
-        if ((p - balls[f].centre).squaredNorm() > limit * limit * (1 + 1e-12)) continue;
-        look(f);
-        reach = std::sqrt(least);
+      for (std::size_t g = 0; g < groups.size(); ++g) {
+        if (!groups[g].near(p, reach)) continue;
+        for (std::size_t f = g * group; f < std::min(faces.size(), (g + 1) * group); ++f) {
+          if (!balls[f].near(p, reach)) continue;
+          look(std::uint32_t(f));
+          reach = std::sqrt(least);
+        }
       }
       const std::size_t at = ring * std::size_t(grid.ring_length) + std::size_t(j);
       result.faces[at] = near = best;

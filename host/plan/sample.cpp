@@ -48,15 +48,15 @@ void check_input(std::span<const Vec3> positions, std::span<const Face> faces) {
 } // namespace
 
 Cap bounding_cap(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Cap everything = {Vec3(0, 0, 1), 4};
   const Vec3 sum = (a + b) + c;
   const double length = sum.norm();
-  if (length < 1e-3) return everything;
+  const auto everything = [] { return Cap{Vec3(0, 0, 1), 4}; };
+  if (length < 1e-3) return everything();
   const Vec3 centre = sum / length;
   const double chord = std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()});
   const double angle = 2 * std::asin(std::min(1.0, chord / 2)) * (1 + 1e-9) + 1e-13;
   // A cap holds the triangles of its points only while it is convex.
-  return angle < pi / 2 ? Cap{centre, angle} : everything;
+  return angle < pi / 2 ? Cap{centre, angle} : everything();
 }
 
 Sample::Sample(std::span<const Vec3> positions_, std::span<const Face> faces_, const SphereGrid& grid_,
