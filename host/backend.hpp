@@ -4,6 +4,7 @@
 #include "host/coefficients.hpp"
 #include "host/kernel_time.hpp"
 #include "host/monitor.hpp"
+#include "host/sphere_samples.hpp"
 #include "host/sphere_transform.hpp"
 #include "host/types.hpp"
 
@@ -84,6 +85,19 @@ public:
 
   /// Upper bound of the memory a transform of so many fields allocates, beside its input and output: O(lmax^2 + points).
   virtual MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const = 0;
+
+  /// For every point of the grid the triangle of a map to the sphere that the ray from the centre in its direction
+  /// (SphereDirections) meets, and where: `positions` are unit vectors, one per vertex, to 1e-9. A triangle holds its edges
+  /// and corners; signs are exact, so a closed mesh leaves no gap. Where several triangles hold a direction, the least
+  /// (flipped, face index) has it, flipped meaning det(a, b, c) < 0; triangles with det 0 hold none (host/plan/sample.hpp).
+  /// Every path gives the same faces; weights agree to 1e-15. Throws Error(map_failed) for a direction that no triangle
+  /// holds, bad_argument, too_large, device_failed, device_lost, interrupted. Of the report, seconds, setup_seconds and
+  /// kernels are set.
+  virtual SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
+                               Monitor& monitor, RunReport* report = nullptr) = 0;
+
+  /// Upper bound of the memory sample() allocates for so many faces, its result included.
+  virtual MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const = 0;
 
   /// Measured multiply-add peak of double precision, in flops per second (a multiply-add counts two).
   virtual double measured_peak() = 0;

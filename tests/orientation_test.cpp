@@ -1,4 +1,4 @@
-#include "host/map/orientation.hpp"
+#include "host/orientation.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>

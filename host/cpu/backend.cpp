@@ -4,6 +4,7 @@
 #include "host/cpu/moments.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/cpu/peak.hpp"
+#include "host/cpu/sample.hpp"
 #include "host/cpu/sphere_transform.hpp"
 #include "host/parallel.hpp"
 
@@ -47,6 +48,13 @@ public:
   }
   MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
     return cpu::sphere_transform_memory(grid, lmax, fields, threads_);
+  }
+  SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
+                       Monitor& monitor, RunReport* report) override {
+    return cpu::sample(positions, faces, grid, threads_, monitor, report);
+  }
+  MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const override {
+    return {cpu::sample_bytes(faces, grid), 0};
   }
   double measured_peak() override { return cpu::peak(threads_); }
 

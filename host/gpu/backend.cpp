@@ -7,6 +7,7 @@
 #include "host/gpu/environment.hpp"
 #include "host/gpu/errors.hpp"
 #include "host/gpu/moments.hpp"
+#include "host/gpu/sample.hpp"
 #include "host/gpu/sphere_transform.hpp"
 
 namespace cowgpu {
@@ -50,6 +51,15 @@ public:
 
   MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
     return gpu::sphere_transform_memory(gpu_->facts(), transform_shape_, grid, lmax, fields);
+  }
+
+  SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
+                       Monitor& monitor, RunReport* report) override {
+    return gpu::translated([&] { return gpu::sample(gpu_, positions, faces, grid, monitor, report); });
+  }
+
+  MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const override {
+    return gpu::sample_memory(gpu_.facts(), faces, grid);
   }
 
   double measured_peak() override {

@@ -1,4 +1,4 @@
-#include "host/map/orientation.hpp"
+#include "host/orientation.hpp"
 
 #include <algorithm>
 #include <array>
