@@ -7,7 +7,9 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace cowgpu {
@@ -57,88 +59,156 @@ void make_positive(Matrix6& hessian) {
   hessian = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+// The lower triangle of the Hessian of a sum over faces, as it is and with each face's part made positive: the values of
+// two sparse matrices of one pattern.
+class Hessians {
+public:
+  Hessians(const std::vector<Face>& faces, std::size_t vertex_count) {
+    const auto size = Eigen::Index(2 * vertex_count);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const Face& face : faces)
+      for_entries(face, [&](Eigen::Index row, Eigen::Index column, int, int) { entries.emplace_back(row, column, 0); });
+    matrix.resize(size, size);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    matrix.makeCompressed();
+    exact.resize(matrix.nonZeros());
+    positive.resize(matrix.nonZeros());
+    for (const Face& face : faces)
+      for_entries(face, [&](Eigen::Index row, Eigen::Index column, int, int) {
+        slots_.push_back(std::size_t(&matrix.coeffRef(row, column) - matrix.valuePtr()));
+      });
+  }
+
+  void clear() {
+    exact.setZero();
+    positive.setZero();
+    next_ = slots_.data();
+  }
+  /// Of the next face, in the order of the faces.
+  void add(const Face& face, const Matrix6& hessian) {
+    Matrix6 made = hessian;
+    make_positive(made);
+    for_entries(face, [&](Eigen::Index, Eigen::Index, int i, int j) {
+      exact[Eigen::Index(*next_)] += hessian(i, j);
+      positive[Eigen::Index(*next_++)] += made(i, j);
+    });
+  }
+
+  Eigen::SparseMatrix<double> matrix;
+  Eigen::ArrayXd exact, positive;
+
+private:
+  template <class Function>
+  static void for_entries(const Face& face, Function&& f) {
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i) {
+        const auto row = Eigen::Index(2 * face[i / 2] + i % 2), column = Eigen::Index(2 * face[j / 2] + j % 2);
+        if (row >= column) f(row, column, i, j);
+      }
+  }
+  std::vector<std::size_t> slots_;
+  const std::size_t* next_ = nullptr;
+};
+
 class Newton {
 public:
-  Newton(const StretchSum& sum, std::vector<Vec3>& positions) : sum_(sum), x_(positions), trial_(positions) {
+  Newton(const StretchSum& sum, std::vector<Vec3>& positions)
+      : sum_(sum), x_(positions), trial_(positions), frames_(positions.size()),
+        hessians_(sum.faces(), positions.size()) {
     energy_ = sum_.energy(x_);
-    frames_.resize(x_.size());
+    solver_.analyzePattern(hessians_.matrix);
   }
 
   NewtonResult run(Monitor& monitor) {
-    constexpr unsigned most_steps = 300;
+    constexpr unsigned most_steps = 500;
     NewtonResult result;
     while (result.steps < most_steps && !result.converged) {
       check_stop(monitor);
       monitor.progress("minimising the stretch", double(result.steps) / most_steps);
-      const double before = energy_;
-      const bool moved = step(result.converged);
-      if (!moved) break;
+      differentiate();
+      factorise();
+      if (!step(result.converged)) break;
       ++result.steps;
-      exact_ = before - energy_ < 1e-3 * energy_; // near the minimum only
     }
     return result;
   }
 
 private:
-  bool step(bool& converged) {
+  void differentiate() {
     for (std::size_t v = 0; v < x_.size(); ++v) frames_[v] = tangent_frame(x_[v]);
-    if (!(exact_ && factorise(true)) && !factorise(false)) return false;
+    gradient_.setZero(Eigen::Index(2 * x_.size()));
+    hessians_.clear();
+    const auto& faces = sum_.faces();
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const auto d =
+          stretch_derivatives(sum_.weights()[f], {frames_[faces[f][0]], frames_[faces[f][1]], frames_[faces[f][2]]});
+      for (int i = 0; i < 3; ++i) gradient_.segment<2>(Eigen::Index(2 * faces[f][i])) += d.gradient.segment<2>(2 * i);
+      hessians_.add(faces[f], d.hessian);
+    }
+  }
+
+  // Far from the minimum the Hessian is not positive definite. The sum of the faces' positive parts is, but so much
+  // larger that steps become short: as little of it is mixed in as does.
+  void factorise() {
+    for (;;) {
+      auto& matrix = hessians_.matrix;
+      Eigen::Map<Eigen::ArrayXd>(matrix.valuePtr(), matrix.nonZeros()) =
+          mixed_in_ * hessians_.positive + (1 - mixed_in_) * hessians_.exact;
+      // Turning the whole sphere changes nothing: the Hessian has three zero eigenvalues.
+      for (Eigen::Index i = 0; i < matrix.cols(); ++i) { // a column begins with its diagonal
+        const auto diagonal = matrix.outerIndexPtr()[i];
+        matrix.valuePtr()[diagonal] += 1e-8 * hessians_.positive[diagonal];
+      }
+      solver_.factorize(matrix);
+      if ((solver_.info() == Eigen::Success && solver_.vectorD().minCoeff() > 0) || mixed_in_ >= 1) break;
+      mixed_in_ = std::min(1.0, 2 * mixed_in_ + 0.01);
+    }
+  }
+
+  // Energy after a part of the move; the positions are in trial_.
+  double try_part(const Eigen::VectorXd& move, double t) {
+    for (std::size_t v = 0; v < x_.size(); ++v) {
+      const Eigen::Vector2d d = t * move.segment<2>(2 * Eigen::Index(v));
+      trial_[v] = (x_[v] + frames_[v].topRows<2>().transpose() * d).normalized();
+    }
+    return sum_.energy(trial_);
+  }
+
+  // False if the energy does not fall.
+  bool step(bool& converged) {
     const Eigen::VectorXd move = -solver_.solve(gradient_);
     const double slope = gradient_.dot(move) / sphere_area; // of the energy, negative
     converged = -slope < 1e-13 * energy_;
-    double t = std::min(1.0, 0.5 / std::max(1e-300, move.lpNorm<Eigen::Infinity>()));
-    for (int halvings = 0; halvings < 50; ++halvings, t /= 2) {
-      for (std::size_t v = 0; v < x_.size(); ++v) {
-        const Eigen::Vector2d d = t * move.segment<2>(2 * Eigen::Index(v));
-        trial_[v] = (x_[v] + frames_[v].topRows<2>().transpose() * d).normalized();
-      }
-      const double energy = sum_.energy(trial_);
-      if (!(energy <= energy_ + 1e-4 * t * slope)) continue;
-      energy_ = energy;
-      x_.swap(trial_);
-      return true;
+    const double longest = move.lpNorm<Eigen::Infinity>();
+    double t = longest > 0.5 ? 0.5 / longest : 1, energy = try_part(move, t);
+    for (int halvings = 0; !(energy <= energy_ + 1e-4 * t * slope); ++halvings) {
+      if (halvings == 50) return false;
+      energy = try_part(move, t /= 2);
     }
-    return false;
-  }
-
-  // The Hessian, each face's made positive unless `exact`; false if it is not positive definite.
-  bool factorise(bool exact) {
-    const auto size = Eigen::Index(2 * x_.size());
-    gradient_.setZero(size);
-    entries_.clear();
-    const auto& faces = sum_.faces();
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      StretchDerivatives d =
-          stretch_derivatives(sum_.weights()[f], {frames_[faces[f][0]], frames_[faces[f][1]], frames_[faces[f][2]]});
-      if (!exact) make_positive(d.hessian);
-      for (int i = 0; i < 6; ++i) {
-        const auto row = Eigen::Index(2 * faces[f][i / 2] + i % 2);
-        gradient_[row] += d.gradient[i];
-        for (int j = 0; j < 6; ++j) {
-          const auto column = Eigen::Index(2 * faces[f][j / 2] + j % 2);
-          if (row >= column) entries_.emplace_back(row, column, d.hessian(i, j));
-        }
+    if (t == 1) // what was mixed in may have made it short
+      while (2 * t * longest <= 0.5) {
+        const double farther = try_part(move, 2 * t);
+        if (!(farther < energy)) break;
+        energy = farther;
+        t *= 2;
       }
-    }
-    hessian_.resize(size, size);
-    hessian_.setFromTriplets(entries_.begin(), entries_.end());
-    // Turning the whole sphere changes nothing: the Hessian has three zero eigenvalues.
-    for (Eigen::Index i = 0; i < size; ++i) hessian_.coeffRef(i, i) *= 1 + 1e-8;
-    if (!analysed_) solver_.analyzePattern(hessian_);
-    analysed_ = true;
-    solver_.factorize(hessian_);
-    return solver_.info() == Eigen::Success && solver_.vectorD().minCoeff() > 0;
+    if (t < 0.25)
+      mixed_in_ = std::min(1.0, 2 * mixed_in_ + 0.01);
+    else
+      mixed_in_ = mixed_in_ < 1e-3 ? 0 : mixed_in_ / 3;
+    energy_ = try_part(move, t);
+    x_.swap(trial_);
+    return true;
   }
 
   const StretchSum& sum_;
   std::vector<Vec3>& x_;
   std::vector<Vec3> trial_;
   double energy_ = 0;
-  bool exact_ = false, analysed_ = false;
+  double mixed_in_ = 0.5; // how much of the faces' positive parts
   std::vector<Frame> frames_;
+  Hessians hessians_;
   Eigen::VectorXd gradient_;
-  std::vector<Eigen::Triplet<double>> entries_;
-  Eigen::SparseMatrix<double> hessian_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
 };
 

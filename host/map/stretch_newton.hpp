@@ -34,7 +34,8 @@ struct NewtonResult {
 };
 
 /// Moves the positions, unit vectors of finite energy, to a minimum nearby; the energy falls at every step. The linear
-/// systems are sparse, positive definite by each face's Hessian being made so far from the minimum.
+/// systems are sparse; where the Hessian is not positive definite, as much of the sum of the faces' positive parts is mixed
+/// in as makes it so. It ends at a minimum, not at a saddle, but for eigenvalues below 1e-8 of the diagonal.
 NewtonResult minimise_stretch(const StretchSum& sum, std::vector<Vec3>& positions, Monitor& monitor);
 
 } // namespace cowgpu
