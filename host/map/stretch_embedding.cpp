@@ -17,9 +17,12 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
-// All vertices are relaxed each time their number has grown by this factor, this often.
+// All vertices are relaxed each time their number has grown by this factor: more often while they are few, because where
+// limbs go is decided then, and at little cost.
 constexpr double growth = 1.3;
-constexpr int sweeps_on_growth = 4;
+std::size_t sweeps_on_growth(std::size_t count) {
+  return std::clamp<std::size_t>(10000 / count, 4, 100);
+}
 
 // A point on a ray from the centre of a star, by halving the distance until the triangles are the right way round.
 struct Best {
@@ -157,7 +160,7 @@ void StretchEmbedding::build(Monitor& monitor) {
       monitor.progress("growing the map", count / total);
     }
     if (count < next_sweeps) continue;
-    for (int i = 0; i < sweeps_on_growth; ++i) {
+    for (std::size_t i = 0; i < sweeps_on_growth(present_.size()); ++i) {
       check_stop(monitor);
       sweep();
     }
