@@ -221,6 +221,15 @@ TEST_CASE("the stretch map of a turned, scaled and shifted body is turned with i
   }
 }
 
+TEST_CASE("the stretch map of a reflected body is reflected with it", "[stretch]") {
+  const auto cow = test::benchmark_cow();
+  if (!cow) return test::skip_without_cow();
+  const SphereMap map = mapped(ManifoldSurface::from(*cow));
+  SphereMap reflected = mapped(manifold(test::flipped(test::scaled(cow->mesh(), {-1, 1, 1}))));
+  for (Vec3& x : reflected.positions) x[0] = -x[0];
+  CHECK(largest_distance(reflected.positions, map.positions) < 1e-6);
+}
+
 TEST_CASE("converged stretch maps of the benchmark are one minimum, whatever its order", "[stretch]") {
   const auto cow = test::benchmark_cow();
   if (!cow) return test::skip_without_cow();
@@ -252,8 +261,8 @@ TEST_CASE("a sphere maps to itself", "[stretch]") {
     for (const Vec3& v : sphere.vertices) expected.push_back(v / 7);
     INFO("level " << level);
     CHECK(measure_stretch(surface, map).energy <= measure_stretch(surface, {"", expected, {}}).energy + 1e-12);
-    CHECK(measure_stretch(surface, map).energy < 1 + 1 * std::pow(0.25, level));
-    CHECK(largest_distance(map.positions, expected) < 0.4 * std::pow(0.25, level));
+    CHECK(measure_stretch(surface, map).energy < 1 + std::pow(0.25, level)); // 0.82 of it
+    CHECK(largest_distance(map.positions, expected) < 0.03 * std::pow(0.25, level));
   }
 }
 
@@ -323,7 +332,7 @@ TEST_CASE("a tetrahedron's stretch map keeps its corners where they point", "[st
 TEST_CASE("large and refined bodies have stretch maps without flips", "[stretch][slow]") {
   const ManifoldSurface sphere = manifold(test::icosphere(6));
   check_bijective(sphere, mapped(sphere));
-  const ManifoldSurface pyramid = manifold(bipyramid(20000));
+  const ManifoldSurface pyramid = manifold(bipyramid(5000));
   check_bijective(pyramid, mapped(pyramid));
   const auto cow = test::benchmark_cow();
   if (!cow) return test::skip_without_cow();
@@ -373,7 +382,7 @@ TEST_CASE("the stretch map stops soon when asked to, and tells how far it is", "
   never.after = 1 << 30;
   stretch_map(surface, {30, 0, true}, never);
   CHECK(never.asked > 60);
-  for (int after = 0; after < never.asked; after += 7) {
+  for (int after = 0; after < never.asked; after += 29) {
     Stopper stopper;
     stopper.after = after;
     try {

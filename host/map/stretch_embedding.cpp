@@ -148,12 +148,16 @@ void StretchEmbedding::build(Monitor& monitor) {
   place_tetrahedron();
   const double total = double(steps.size()) + 4;
   double next_sweeps = growth * 4;
+  std::vector<std::uint32_t> neighbours;
   while (!steps.empty()) {
     const std::uint32_t v = steps.back().vertex;
     insert(std::move(steps.back()));
     steps.pop_back();
     relax(v, 4);
-    for (const std::uint32_t u : rings_.of(v)) relax(u, 1);
+    const auto ring = rings_.of(v);
+    neighbours.assign(ring.begin(), ring.end());
+    std::sort(neighbours.begin(), neighbours.end()); // a reflected body has the same order so
+    for (const std::uint32_t u : neighbours) relax(u, 1);
     const double count = double(present_.size());
     if (present_.size() % 256 == 0) {
       check_stop(monitor);
