@@ -154,10 +154,13 @@ private:
       auto& matrix = hessians_.matrix;
       Eigen::Map<Eigen::ArrayXd>(matrix.valuePtr(), matrix.nonZeros()) =
           mixed_in_ * hessians_.positive + (1 - mixed_in_) * hessians_.exact;
-      // Turning the whole sphere changes nothing: the Hessian has three zero eigenvalues.
-      for (Eigen::Index i = 0; i < matrix.cols(); ++i) { // a column begins with its diagonal
-        const auto diagonal = matrix.outerIndexPtr()[i];
-        matrix.valuePtr()[diagonal] += 1e-8 * hessians_.positive[diagonal];
+      // Turning the whole sphere changes nothing: the Hessian has three zero eigenvalues. Far from the minimum more is
+      // added: a matrix that is hardly definite makes steps that rounding decides.
+      for (Eigen::Index i = 0; i < matrix.cols(); i += 2) { // a column begins with its diagonal
+        const auto p = matrix.outerIndexPtr()[i], q = matrix.outerIndexPtr()[i + 1];
+        const double shift = (near_ ? 1e-8 : 1e-3) * (hessians_.positive[p] + hessians_.positive[q]);
+        matrix.valuePtr()[p] += shift;
+        matrix.valuePtr()[q] += shift;
       }
       solver_.factorize(matrix);
       if ((solver_.info() == Eigen::Success && solver_.vectorD().minCoeff() > 0) || mixed_in_ >= 1) break;
@@ -179,7 +182,9 @@ private:
     const Eigen::VectorXd move = -solver_.solve(gradient_);
     const double slope = gradient_.dot(move) / sphere_area; // of the energy, negative
     converged = -slope < 1e-13 * energy_;
-    const double longest = move.lpNorm<Eigen::Infinity>();
+    near_ = near_ || -slope < 1e-6 * energy_;
+    double longest = 0; // in any frames
+    for (Eigen::Index i = 0; i < move.size(); i += 2) longest = std::max(longest, move.segment<2>(i).norm());
     double t = longest > 0.5 ? 0.5 / longest : 1, energy = try_part(move, t);
     for (int halvings = 0; !(energy <= energy_ + 1e-4 * t * slope); ++halvings) {
       if (halvings == 50) return false;
@@ -205,6 +210,7 @@ private:
   std::vector<Vec3>& x_;
   std::vector<Vec3> trial_;
   double energy_ = 0;
+  bool near_ = false;     // to the minimum
   double mixed_in_ = 0.5; // how much of the faces' positive parts
   std::vector<Frame> frames_;
   Hessians hessians_;
