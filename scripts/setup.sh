@@ -91,6 +91,31 @@ ensure_packages() {
   printf '%s\n' "$names" >"$stamp"
 }
 
+# fetch_bodies: the meshes of Debian's libcgal-demo into build/bodies, for the tests that need them. They lie in one
+# archive under the package's documentation, which an installation may leave out, so the package itself is unpacked.
+# Nothing fails without a network: those tests are skipped then.
+fetch_bodies() {
+  local bodies=$root/build/bodies part=$root/build/bodies.part archive=usr/share/doc/libcgal-dev/data.tar.gz
+  local fetch=(apt-get -q -o Acquire::Retries=1 -o Acquire::http::Timeout=20 -o APT::Sandbox::User=root download libcgal-demo)
+  [[ ! -d $bodies ]] || return 0
+  command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || return 0
+  rm -rf -- "$part"
+  mkdir -- "$part" || return 0
+  say "fetching bodies for the tests, this once"
+  if (
+    set -e
+    cd -- "$part"
+    "${fetch[@]}" || { ((EUID == 0)) && apt-get -q update && "${fetch[@]}"; }
+    dpkg-deb --fsys-tarfile libcgal-demo_*.deb | tar -xO "./$archive" | tar -xz --strip-components=2 --wildcards 'data/meshes/*.off'
+    rm -- libcgal-demo_*.deb
+  ) </dev/null >>"$log" 2>&1; then
+    mv -- "$part" "$bodies"
+  else
+    rm -rf -- "$part"
+    say "the bodies could not be fetched (see $log): the tests that need them will be skipped"
+  fi
+}
+
 # configured: whether the build folder is complete and of this source folder (not moved or copied with it).
 configured() {
   local home
@@ -150,6 +175,7 @@ set_up() {
   fi
   : >"$log" || exit 5
   ensure_packages $groups
+  [[ $1 != check ]] || fetch_bodies
   if ! build "${arguments[@]}"; then
     rm -f -- "$stamp" # perhaps a package has gone
     installed=''

@@ -221,4 +221,18 @@ void skip_without_cow() {
   std::cout << "SKIPPED: the benchmark mesh cow.off is not here; see data/meshes/README.md" << std::endl;
 }
 
+const std::vector<std::string> demo_bodies = {"armadillo", "bear",       "bull",  "bunny00",
+                                              "camel",     "diplodocus", "homer", "triceratops"};
+
+std::optional<ClosedSurface> demo_body(const std::string& name) {
+  const char* folder = std::getenv("COWGPU_BODIES");
+  const std::filesystem::path path = std::filesystem::path(folder ? folder : COWGPU_BODIES) / (name + ".off");
+  if (!std::filesystem::exists(path)) return {};
+  return ClosedSurface::from(parse_off(read_file(path), name));
+}
+
+void skip_without_bodies(const std::string& name) {
+  std::cout << "SKIPPED: " << name << " of Debian's libcgal-demo is not in build/bodies; ./check fetches it" << std::endl;
+}
+
 } // namespace cowgpu::test

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace cowgpu::test {
 
@@ -43,5 +45,12 @@ RawMesh some_faces(RawMesh mesh, std::size_t count, std::size_t stride = 1);
 std::optional<ClosedSurface> benchmark_cow();
 /// Makes ctest list the test as skipped; the test returns then.
 void skip_without_cow();
+
+/// The closed bodies of genus 0 among those of Debian's libcgal-demo.
+extern const std::vector<std::string> demo_bodies;
+/// One of them by name ("bull"), found in $COWGPU_BODIES or in build/bodies, where ./check puts them.
+std::optional<ClosedSurface> demo_body(const std::string& name);
+/// Makes ctest list the test as skipped; the test returns then.
+void skip_without_bodies(const std::string& name);
 
 } // namespace cowgpu::test
