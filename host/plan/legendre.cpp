@@ -89,6 +89,13 @@ Legendre legendre(const SphereGrid& grid, int lmax, unsigned threads) {
   return plan;
 }
 
+Legendre recurrence(int lmax, unsigned threads) {
+  Legendre plan;
+  plan.lmax = lmax;
+  set_recurrence(plan, threads);
+  return plan;
+}
+
 void prepare_synthesis(const Legendre& plan, int m, std::span<const std::complex<double>> coefficients, double* q,
                        std::size_t stride) {
   const double* alpha = &plan.alpha[plan.offset[std::size_t(m)]];

@@ -65,6 +65,9 @@ struct Legendre {
 /// Plan for `grid`, lmax <= grid.lmax. `threads` 0: all.
 Legendre legendre(const SphereGrid& grid, int lmax, unsigned threads = 0);
 
+/// A plan without rings: the coefficients of the recurrence only, for any lmax up to largest_grid_degree.
+Legendre recurrence(int lmax, unsigned threads = 0);
+
 /// Start of the recurrence, per group of consecutive orders and block of pairs.
 struct Seeds {
   static constexpr std::uint32_t never = 0xffffffffu;
