@@ -2,8 +2,10 @@
 #pragma once
 
 #include "host/coefficients.hpp"
+#include "host/image.hpp"
 #include "host/kernel_time.hpp"
 #include "host/monitor.hpp"
+#include "host/render.hpp"
 #include "host/sphere_transform.hpp"
 #include "host/types.hpp"
 
@@ -84,6 +86,11 @@ public:
 
   /// Upper bound of the memory a transform of so many fields allocates, beside its input and output: O(lmax^2 + points).
   virtual MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const = 0;
+
+  /// The scene as a picture: smooth or flat shading, light from the upper left, the light of sky and ground where the
+  /// surroundings let it through, edges with 16 samples a pixel. The same scene gives the same picture on any number of
+  /// threads. Throws what check(scene) throws, Error(interrupted).
+  virtual Image render(const RenderScene& scene, Monitor& monitor) = 0;
 
   /// Measured multiply-add peak of double precision, in flops per second (a multiply-add counts two).
   virtual double measured_peak() = 0;

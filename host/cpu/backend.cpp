@@ -4,6 +4,7 @@
 #include "host/cpu/moments.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/cpu/peak.hpp"
+#include "host/cpu/render.hpp"
 #include "host/cpu/sphere_transform.hpp"
 #include "host/parallel.hpp"
 
@@ -48,6 +49,7 @@ public:
   MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
     return cpu::sphere_transform_memory(grid, lmax, fields, threads_);
   }
+  Image render(const RenderScene& scene, Monitor& monitor) override { return cpu::render(scene, threads_, monitor); }
   double measured_peak() override { return cpu::peak(threads_); }
 
 private:

@@ -51,6 +51,10 @@ public:
     return gpu::sphere_transform_memory(gpu_.facts(), grid, lmax, fields);
   }
 
+  Image render(const RenderScene& scene, Monitor& monitor) override {
+    return make_cpu_backend()->render(scene, monitor); // no kernel of its own so far
+  }
+
   double measured_peak() override {
     return gpu::translated([&] { return engine::peak(gpu_.device()); });
   }

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/sha256.hpp"
+#include "host/io/shown.hpp"
 
 #include <fmt/core.h>
 
@@ -74,14 +75,6 @@ private:
   const char* end_;
   std::size_t line_ = 1;
 };
-
-/// A word fit for a message: printable and short.
-std::string shown(std::string_view word) {
-  std::string text(word.substr(0, 24));
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = '?';
-  return word.size() > text.size() ? text + "..." : text;
-}
 
 /// from_chars knows no plus sign.
 std::string_view without_plus(std::string_view word) {
