@@ -35,7 +35,8 @@ void Buffer::allocate(Place place) {
                             device_.name(), action, double(device_.physical().largest_allocation) / (1 << 20)));
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = size_;
-  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
+               VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   device_.check(vkCreateBuffer(device_.handle(), &info, nullptr, &handle_), action);
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device_.handle(), handle_, &needs);
@@ -69,7 +70,21 @@ void Buffer::allocate(Place place) {
   }
 }
 
+VkBufferView Buffer::view(VkFormat format, std::uint64_t offset, std::uint64_t bytes) const {
+  VkBufferView& kept = views_[{format, offset, bytes}];
+  if (!kept) {
+    VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+    info.buffer = handle_;
+    info.format = format;
+    info.offset = offset;
+    info.range = bytes;
+    device_.check(vkCreateBufferView(device_.handle(), &info, nullptr, &kept), "make a texel view of " + what_);
+  }
+  return kept;
+}
+
 void Buffer::release() {
+  for (const auto& [key, view] : views_) vkDestroyBufferView(device_.handle(), view, nullptr);
   if (handle_) vkDestroyBuffer(device_.handle(), handle_, nullptr);
   if (memory_) vkFreeMemory(device_.handle(), memory_, nullptr);
 }

@@ -1,10 +1,12 @@
-// A storage buffer with its memory.
+// A buffer for shaders, with its memory.
 #pragma once
 
 #include "engine/device.hpp"
 
 #include <cstddef>
+#include <map>
 #include <span>
+#include <tuple>
 
 namespace cowgpu::engine {
 
@@ -27,6 +29,11 @@ public:
   void read(std::span<std::byte> data, std::uint64_t offset = 0);
   /// Fills the buffer with zeros.
   void clear();
+  /// The memory itself where it is mapped, else empty. No job may use the buffer while it is touched.
+  std::span<std::byte> mapped() { return {mapped_, mapped_ ? size_ : 0}; }
+
+  /// Bytes [offset, offset + bytes) as texels of `format`; made on first use and kept as long as the buffer.
+  VkBufferView view(VkFormat format, std::uint64_t offset, std::uint64_t bytes) const;
 
 private:
   enum class Place { device, staging };
@@ -42,6 +49,7 @@ private:
   VkBuffer handle_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   std::byte* mapped_ = nullptr;
+  mutable std::map<std::tuple<VkFormat, std::uint64_t, std::uint64_t>, VkBufferView> views_;
 };
 
 } // namespace cowgpu::engine

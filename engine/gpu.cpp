@@ -23,6 +23,7 @@ GpuFacts facts_of(const PhysicalDevice& device) {
   facts.shared_memory = p.limits.maxComputeSharedMemorySize;
   facts.largest_range = p.limits.maxStorageBufferRange;
   facts.largest_allocation = device.largest_allocation;
+  facts.largest_texels = p.limits.maxTexelBufferElements;
   for (std::uint32_t h = 0; h < device.memory.memoryHeapCount; ++h)
     if (device.memory.memoryHeaps[h].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
       facts.memory = std::max<std::uint64_t>(facts.memory, device.memory.memoryHeaps[h].size);

@@ -26,6 +26,7 @@ struct GpuFacts {
   std::uint64_t memory = 0;        ///< bytes of the largest device-local heap
   std::uint64_t largest_range = 0; ///< bytes one binding may span
   std::uint64_t largest_allocation = 0;
+  std::uint64_t largest_texels = 0; ///< elements of a texel buffer
 };
 
 /// Devices of this machine, best first. Throws Error(no_loader), Error(no_device), Error(vulkan).

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <iterator>
 
 namespace cowgpu::engine {
 namespace {
@@ -21,11 +22,12 @@ Job::Job(Device& device) : device_(device) {
     device_.check(vkAllocateCommandBuffers(device_.handle(), &commands, &commands_), "make a command buffer");
     VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     device_.check(vkCreateFence(device_.handle(), &fence, nullptr, &fence_), "make a fence");
-    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, capacity * most_bindings};
+    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, capacity * most_bindings},
+                                          {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, capacity * most_bindings}};
     VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     pool.maxSets = capacity;
-    pool.poolSizeCount = 1;
-    pool.pPoolSizes = &size;
+    pool.poolSizeCount = std::size(sizes);
+    pool.pPoolSizes = sizes;
     device_.check(vkCreateDescriptorPool(device_.handle(), &pool, nullptr, &pool_), "make a descriptor pool");
     VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
     queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
@@ -90,21 +92,30 @@ void Job::dispatch(const Kernel& kernel, std::span<const BufferRange> ranges, st
   allocate.pSetLayouts = &layout;
   device_.check(vkAllocateDescriptorSets(device_.handle(), &allocate, &set), "make a descriptor set");
   std::array<VkDescriptorBufferInfo, most_bindings> buffers{};
+  std::array<VkBufferView, most_bindings> views{};
   std::array<VkWriteDescriptorSet, most_bindings> writes{};
   for (std::uint32_t b = 0; b < ranges.size(); ++b) {
     const BufferRange& range = ranges[b];
     const std::uint64_t size = range.size ? range.size : range.buffer->size() - range.offset;
-    if (range.offset + size > range.buffer->size() || size > device_.largest_range())
+    const bool texels = kernel.kind(b) != BindingKind::storage;
+    const std::uint64_t texel_bytes = kernel.kind(b) == BindingKind::texel_double ? 8 : 16;
+    const std::uint64_t most =
+        texels ? texel_bytes * device_.limits().maxTexelBufferElements : device_.largest_range();
+    if (range.offset + size > range.buffer->size() || size > most)
       throw Error(Failure::out_of_range, 0,
                   fmt::format("binding {} of {} spans {} bytes; the device {} takes {}", b, kernel.name(), size,
-                              device_.name(), device_.largest_range()));
+                              device_.name(), most));
     buffers[b] = {range.buffer->handle(), range.offset, size};
+    if (texels)
+      views[b] = range.buffer->view(texel_bytes == 8 ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32G32B32A32_UINT,
+                                    range.offset, size);
     writes[b] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     writes[b].dstSet = set;
     writes[b].dstBinding = b;
     writes[b].descriptorCount = 1;
-    writes[b].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    writes[b].descriptorType = descriptor_type(kernel.kind(b));
     writes[b].pBufferInfo = &buffers[b];
+    writes[b].pTexelBufferView = &views[b];
   }
   vkUpdateDescriptorSets(device_.handle(), std::uint32_t(ranges.size()), writes.data(), 0, nullptr);
 

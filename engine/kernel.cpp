@@ -4,8 +4,13 @@
 
 namespace cowgpu::engine {
 
+VkDescriptorType descriptor_type(BindingKind kind) {
+  return kind == BindingKind::storage ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+}
+
 Kernel::Kernel(Device& device, const KernelInfo& info)
-    : device_(device), name_(info.name), bindings_(info.bindings), push_bytes_(info.push_bytes) {
+    : device_(device), name_(info.name), bindings_(info.bindings), kinds_(info.kinds), push_bytes_(info.push_bytes) {
+  kinds_.resize(bindings_, BindingKind::storage);
   try {
     create(info);
   } catch (...) {
@@ -29,7 +34,7 @@ void Kernel::create(const KernelInfo& info) {
 
   std::vector<VkDescriptorSetLayoutBinding> slots(bindings_);
   for (std::uint32_t b = 0; b < bindings_; ++b)
-    slots[b] = {b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+    slots[b] = {b, descriptor_type(kinds_[b]), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   set.bindingCount = bindings_;
   set.pBindings = slots.data();

@@ -10,14 +10,24 @@
 
 namespace cowgpu::engine {
 
+/// How a shader sees a buffer. Texel buffers are read-only, and on software devices several times faster inside loops.
+enum class BindingKind {
+  storage,
+  texel_double,  ///< usamplerBuffer, a double a texel (R32G32_UINT)
+  texel_doubles, ///< usamplerBuffer, two doubles a texel (R32G32B32A32_UINT)
+};
+
 /// What a kernel is made of.
 struct KernelInfo {
   std::string name; ///< in errors and in the profile
   std::span<const std::uint32_t> spirv;
-  std::uint32_t bindings = 0;           ///< storage buffers 0 ... bindings-1 of set 0
+  std::uint32_t bindings = 0;           ///< buffers 0 ... bindings-1 of set 0
   std::uint32_t push_bytes = 0;         ///< of push constants; at most 128
   std::vector<std::uint32_t> constants; ///< specialization constants with ids 0, 1, 2 ...
+  std::vector<BindingKind> kinds = {};  ///< of the first bindings; the others are storage buffers
 };
+
+VkDescriptorType descriptor_type(BindingKind kind);
 
 /// A pipeline. The first specialization constant is the workgroup's width by the shaders' convention.
 class Kernel {
@@ -33,6 +43,7 @@ public:
   VkPipelineLayout layout() const { return layout_; }
   VkDescriptorSetLayout set_layout() const { return set_layout_; }
   std::uint32_t bindings() const { return bindings_; }
+  BindingKind kind(std::uint32_t binding) const { return kinds_[binding]; }
   std::uint32_t push_bytes() const { return push_bytes_; }
 
 private:
@@ -42,6 +53,7 @@ private:
   Device& device_;
   std::string name_;
   std::uint32_t bindings_;
+  std::vector<BindingKind> kinds_;
   std::uint32_t push_bytes_;
   VkShaderModule module_ = VK_NULL_HANDLE;
   VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;

@@ -26,11 +26,16 @@ DirectionValues at(const SphereCoefficients& a, const std::vector<Direction>& pl
   return DirectionSynthesis(a, derivatives, threads).at(places, silent);
 }
 
-/// The poles, places next to them, the equator, where blocks change, angles out of range, and `more` at random.
-std::vector<Direction> places(std::size_t more) {
+/// The poles, places next to them, the equator, where the method changes, angles out of range, and `more` at random.
+std::vector<Direction> places(int lmax, std::size_t more) {
   std::vector<Direction> all;
   for (const double theta : {0.0, pi, 1e-300, 1e-8, 1e-3, pi - 1e-5, 0.02, pi / 4, 0.75 * pi, pi / 2, -0.3, 4.0, 9.0})
     all.push_back(direction(theta, 0.7 + theta));
+  for (const double edge : {15.9, 16.1}) // of the polar cap
+    for (const bool south : {false, true}) {
+      const double theta = std::asin(std::min(0.5, edge / std::max(1, lmax)));
+      all.push_back(direction(south ? pi - theta : theta, edge));
+    }
   for (const Vec3& r : {Vec3(0, 0, 3), Vec3(0, 0, -1e-200), Vec3(1e-12, 0, 1), Vec3(1, 0, 0), Vec3(-1e200, 1, 3)})
     all.push_back(direction(r));
   std::mt19937 random(11);
@@ -69,11 +74,11 @@ void check_places(int lmax, int fields, const std::vector<Direction>& all, doubl
 
 TEST_CASE("fields and derivatives at directions are the 80-bit sums", "[directions]") {
   for (const int lmax : {0, 1, 2, 3, 7, 15, 16, 31, 100, 257})
-    check_places(lmax, lmax < 50 ? 3 : 1, places(lmax < 50 ? 40 : 10), 1e-13 * std::sqrt(std::max(1, lmax)));
+    check_places(lmax, lmax < 50 ? 3 : 1, places(lmax, lmax < 50 ? 40 : 10), 2.5e-14 * std::sqrt(std::max(1, lmax)));
 }
 
 TEST_CASE("fields and derivatives at directions are the 80-bit sums at degree 1024", "[directions]") {
-  check_places(1024, 1, places(2), 3e-12);
+  check_places(1024, 1, places(1024, 2), 8e-13);
 }
 
 TEST_CASE("a spherical harmonic at directions is its closed form", "[directions]") {
@@ -109,7 +114,7 @@ TEST_CASE("at the poles d_phi is 0 and d_theta turns with the meridian", "[direc
 
 TEST_CASE("a direction's values do not depend on other directions, threads or fields", "[directions]") {
   const SphereCoefficients a = random_coefficients(90, 3, 2);
-  const std::vector<Direction> all = places(500);
+  const std::vector<Direction> all = places(90, 500);
   const DirectionValues many = at(a, all, true, 1), others = at(a, all, true, 3);
   CHECK(many.values == others.values);
   CHECK(many.d_theta == others.d_theta);
@@ -140,7 +145,7 @@ TEST_CASE("angles and vectors name the same direction", "[directions]") {
 
 TEST_CASE("no direction gives a NaN at degree 4096", "[directions][slow]") {
   const SphereCoefficients a = random_coefficients(4096, 1, 3);
-  const DirectionValues v = at(a, places(0));
+  const DirectionValues v = at(a, places(4096, 0));
   const double scale = field_scale(a);
   for (std::size_t i = 0; i < v.values.size(); ++i) {
     CHECK(std::fabs(v.values[i]) < 10 * scale);
@@ -153,7 +158,7 @@ TEST_CASE("synthesis at directions takes none, tells its progress, stops when as
           "[directions]") {
   const SphereCoefficients a = random_coefficients(40, 1, 6);
   CHECK(at(a, {}).values.empty());
-  CHECK(at(SphereCoefficients(5, 0), places(0)).values.empty());
+  CHECK(at(SphereCoefficients(5, 0), places(5, 0)).values.empty());
 
   struct Watch : Monitor {
     void progress(const char* what, double fraction) override {
@@ -169,11 +174,11 @@ TEST_CASE("synthesis at directions takes none, tells its progress, stops when as
   };
   const DirectionSynthesis synthesis(a, false, 1);
   Watch watch;
-  synthesis.at(places(1000), watch);
+  synthesis.at(places(40, 1000), watch);
   CHECK(watch.last == 1);
   Watch stopping;
   stopping.stop_after = 3;
-  CHECK_THROWS_AS(synthesis.at(places(1000), stopping), Error);
+  CHECK_THROWS_AS(synthesis.at(places(40, 1000), stopping), Error);
   CHECK(stopping.calls == 3);
 
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();

@@ -30,6 +30,11 @@ void add_inspect(CLI::App& app, Common& common);
 void add_devices(CLI::App& app, Common& common);
 void add_render(CLI::App& app, Common& common);
 void add_bench(CLI::App& app, Common& common);
+void add_transform(CLI::App& app, Common& common);
+void add_spectrum(CLI::App& app, Common& common);
+
+/// Adds `roundtrip` to the command `transform`.
+void add_roundtrip(CLI::App& transform, Common& common);
 
 /// Adds --device, --threads, --progress and --quiet.
 void add_common_options(CLI::App& command, Common& common);
@@ -37,6 +42,13 @@ void add_common_options(CLI::App& command, Common& common);
 /// Opens what --device names: "cpu", or a Vulkan device. "auto" falls back to the CPU path where there is no loader, no
 /// device or no double precision; `note` then says so. Throws Error(no_loader, no_device, no_fp64, device_failed).
 std::unique_ptr<Backend> open_backend(const Common& common, std::string* note);
+
+/// Adds --grid and --lmax as the transforms have them; `lmax` stays as it is where the option is not given.
+void add_grid_option(CLI::App& command, std::string& grid, const char* what);
+void add_degree_option(CLI::App& command, int& lmax, const char* what);
+
+/// Throws Error(too_large) with `advice` where this machine has not so much memory.
+void check_memory(const MemoryNeed& need, const Backend& backend, const char* advice);
 
 /// The help text of a MESH argument.
 std::string mesh_help();

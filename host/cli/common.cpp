@@ -38,6 +38,23 @@ std::unique_ptr<Backend> open_backend(const Common& common, std::string* note) {
   }
 }
 
+void add_grid_option(CLI::App& command, std::string& grid, const char* what) {
+  command.add_option("--grid", grid, what)->check(CLI::IsMember({"gl", "cc", "dh", "dh1"}))->type_name("KIND");
+}
+
+void add_degree_option(CLI::App& command, int& lmax, const char* what) {
+  command.add_option("--lmax", lmax, what)->check(CLI::Range(0, largest_grid_degree))->type_name("L");
+}
+
+void check_memory(const MemoryNeed& need, const Backend& backend, const char* advice) {
+  const DeviceFacts cpu = make_cpu_backend(1)->facts();
+  const bool shared = backend.facts().type == "software" || backend.facts().type == "integrated";
+  const std::uint64_t host = need.host + (shared ? need.device : 0);
+  if (cpu.memory && host > cpu.memory)
+    throw Error(Fault::too_large, fmt::format("this needs {} MiB of memory and the machine has {} MiB; {}", host >> 20,
+                                              cpu.memory >> 20, advice));
+}
+
 std::string mesh_help() {
   std::string text = "An OFF file, `benchmark` (libigl's cow.off), or a built-in body:";
   for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);

@@ -5,13 +5,12 @@
 #include "host/io/atomic_file.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/plan/moments.hpp"
+#include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <charconv>
-#include <ctime>
 
 namespace cowgpu::cli {
 namespace {
@@ -86,16 +85,6 @@ MemoryNeed memory_need(const Options& options, const MomentProblem& problem, con
   return need;
 }
 
-void check_memory(const MemoryNeed& need, const Backend& backend) {
-  const DeviceFacts cpu = make_cpu_backend(1)->facts();
-  const bool shared = backend.facts().type == "software" || backend.facts().type == "integrated";
-  const std::uint64_t host = need.host + (shared ? need.device : 0);
-  if (cpu.memory && host > cpu.memory)
-    throw Error(Fault::too_large, fmt::format("this needs {} MiB of memory and the machine has {} MiB; lower --lmax or "
-                                              "take a mesh with fewer triangles",
-                                              host >> 20, cpu.memory >> 20));
-}
-
 void write_plan(const Options& options, const Body& body, const MomentProblem& problem, const Backend& backend) {
   const plan::Moments plan = plan::moments(problem, int(backend.facts().subgroup));
   const MemoryNeed need = memory_need(options, problem, backend);
@@ -126,12 +115,9 @@ ExpandResult compute(const Options& options, const Common& common, Body body, st
   timings.verify = watch.lap();
   const Tensors second = tensors(body);
   timings.total = watch.total();
-  ExpandResult result{common.command,  fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))),
-                      std::move(body), backend->facts(),
-                      options.cut_off, std::move(mass),
-                      second,          std::move(run),
-                      timings,         std::move(accuracy),
-                      std::move(notes)};
+  ExpandResult result{common.command,  utc_now(),           std::move(body), backend->facts(),
+                      options.cut_off, std::move(mass),     second,          std::move(run),
+                      timings,         std::move(accuracy), std::move(notes)};
   return result;
 }
 
@@ -157,7 +143,7 @@ void run(const Options& options, Common& common) {
     notes.push_back(note);
   }
   const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
-  check_memory(memory_need(options, problem, *backend), *backend);
+  check_memory(memory_need(options, problem, *backend), *backend, "lower --lmax or take a mesh with fewer triangles");
   if (options.dry_run) {
     write_plan(options, body, problem, *backend);
     return;

@@ -26,6 +26,8 @@ int run(int argc, char** argv) {
   common.command.assign(argv, argv + argc);
   cli::add_expand(app, common);
   cli::add_validate(app, common);
+  cli::add_transform(app, common);
+  cli::add_spectrum(app, common);
   cli::add_inspect(app, common);
   cli::add_devices(app, common);
   cli::add_render(app, common);
@@ -39,11 +41,12 @@ int run(int argc, char** argv) {
     cli::flush_stdout();
     return 0;
   } catch (const CLI::ParseError& error) {
-    const CLI::App* at = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
-    return fail(
-        name(Fault::bad_argument).data(),
-        fmt::format("{}; see `{} --help`", error.what(), at == &app ? "cowgpu" : "cowgpu " + at->get_name()).c_str(),
-        2);
+    std::string command = "cowgpu";
+    for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+      at = at->get_subcommands().front();
+      command += " " + at->get_name();
+    }
+    return fail(name(Fault::bad_argument).data(), fmt::format("{}; see `{} --help`", error.what(), command).c_str(), 2);
   }
 }
 

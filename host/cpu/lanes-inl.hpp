@@ -20,35 +20,45 @@ using V = hn::Vec<D>;
 constexpr D d;
 constexpr std::size_t lanes = hn::MaxLanes(d);
 
-/// Sums over the lanes of a[0] ... a[7], added to p[0] ... p[7], which are aligned.
-HWY_INLINE void add_lane_sums(const V* a, double* p) {
+/// Sums over the lanes of a[0] ... a[7]: as 8 / lanes vectors, given to to(vector, its index).
+template <class To>
+HWY_INLINE void lane_sums(const V* a, const To& to) {
   if constexpr (lanes == 1) {
-    for (int i = 0; i < 8; ++i) p[i] += hn::GetLane(a[i]);
+    for (std::size_t i = 0; i < 8; ++i) to(a[i], i);
   } else {
 #if HWY_TARGET != HWY_SCALAR
     const auto add_pair = [](V x, V y)
                               HWY_ATTR { return hn::Add(hn::InterleaveLower(d, x, y), hn::InterleaveUpper(d, x, y)); };
     const V p0 = add_pair(a[0], a[1]), p1 = add_pair(a[2], a[3]), p2 = add_pair(a[4], a[5]), p3 = add_pair(a[6], a[7]);
-    const auto accumulate = [](V sum, double* to) HWY_ATTR { hn::Store(hn::Add(hn::Load(d, to), sum), d, to); };
     if constexpr (lanes == 2) {
-      accumulate(p0, p);
-      accumulate(p1, p + 2);
-      accumulate(p2, p + 4);
-      accumulate(p3, p + 6);
+      to(p0, 0);
+      to(p1, 1);
+      to(p2, 2);
+      to(p3, 3);
     } else {
       const auto add_blocks = [](V x, V y) HWY_ATTR {
         return hn::Add(hn::OddEvenBlocks(y, x), hn::SwapAdjacentBlocks(hn::OddEvenBlocks(x, y)));
       };
       const V q0 = add_blocks(p0, p1), q1 = add_blocks(p2, p3);
       if constexpr (lanes == 4) {
-        accumulate(q0, p);
-        accumulate(q1, p + 4);
+        to(q0, 0);
+        to(q1, 1);
       } else {
-        accumulate(hn::Add(hn::ConcatLowerLower(d, q1, q0), hn::ConcatUpperUpper(d, q1, q0)), p);
+        to(hn::Add(hn::ConcatLowerLower(d, q1, q0), hn::ConcatUpperUpper(d, q1, q0)), 0);
       }
     }
 #endif
   }
+}
+
+/// Sums over the lanes of a[0] ... a[7], to p[0] ... p[7], which are aligned.
+HWY_INLINE void store_lane_sums(const V* a, double* p) {
+  lane_sums(a, [p](V sum, std::size_t i) HWY_ATTR { hn::Store(sum, d, p + i * lanes); });
+}
+/// The same, added to what is there.
+HWY_INLINE void add_lane_sums(const V* a, double* p) {
+  lane_sums(a, [p](V sum, std::size_t i)
+                   HWY_ATTR { hn::Store(hn::Add(hn::Load(d, p + i * lanes), sum), d, p + i * lanes); });
 }
 
 /// Rows become columns of a[0] ... a[lanes-1].

@@ -30,11 +30,11 @@ constexpr std::size_t synthesis_vectors(int fields) {
 constexpr std::size_t analysis_vectors = many_registers ? 4 : 2;
 constexpr std::size_t recurrence_vectors = many_registers ? 8 : 4;
 
-constexpr std::size_t chunk_doubles = 4096; // 32 KiB
-// Analysis of one field: steps of a chunk.
-constexpr std::size_t chunk_steps = chunk_doubles / (4 * lanes);
+// Analysis of one field: steps of a chunk, whose sums take 24 KiB.
+constexpr std::size_t chunk_steps = 3072 / (4 * lanes);
 // Analysis of several: vectors of a panel, and where its parts stand in the chunk.
 constexpr std::size_t panel_vectors = 40 * parts;
+static_assert((segment + 2) * panel_vectors * lanes <= 3200);
 
 // One order on the blocks that share a form of the recurrence. Vectors are counted from the first block of all.
 struct Rows {
@@ -116,8 +116,9 @@ void synthesise(const Rows& rows, std::size_t first, std::size_t end, const doub
     synthesise_vectors<Fields, together>(rows, vector, q, cells);
 }
 
-// Adds the segments [begin, end) of N vectors to sums[k - 8 begin][4], each a vector.
-template <std::size_t N>
+// Adds the segments [begin, end) of N vectors to sums[k - 8 begin][4], each a vector; the first ones are not added to
+// anything.
+template <std::size_t N, bool First>
 HWY_INLINE void analyse_vectors(const Rows& rows, std::size_t vector, std::uint32_t begin, std::uint32_t end,
                                 const double* cells, double* state, double* sums) {
   const std::uint32_t first = std::max(begin, rows.start_of(vector + N - 1)), last = rows.start_of(vector);
@@ -144,16 +145,17 @@ HWY_INLINE void analyse_vectors(const Rows& rows, std::size_t vector, std::uint3
     double* sum = sums + (g - begin) * segment * 4 * lanes;
     for (std::size_t k = 0; k < segment; k += 2, sum += 8 * lanes) {
       for (std::size_t u = 0; u < 4; ++u) {
-        V s = hn::Load(d, sum + u * lanes);
-        for (std::size_t v = 0; v < N; ++v) s = hn::MulAdd(current[v], f[u][v], s);
+        V s = First ? hn::Mul(current[0], f[u][0]) : hn::MulAdd(current[0], f[u][0], hn::Load(d, sum + u * lanes));
+        for (std::size_t v = 1; v < N; ++v) s = hn::MulAdd(current[v], f[u][v], s);
         hn::Store(s, d, sum + u * lanes);
       }
       const V a0 = hn::Set(d, a[k]), b0 = hn::Set(d, b[k]);
       for (std::size_t v = 0; v < N; ++v)
         previous[v] = hn::MulAdd(hn::MulAdd(a0, hn::Load(d, t + v * lanes), b0), current[v], previous[v]);
       for (std::size_t u = 0; u < 4; ++u) {
-        V s = hn::Load(d, sum + (4 + u) * lanes);
-        for (std::size_t v = 0; v < N; ++v) s = hn::MulAdd(previous[v], f[u][v], s);
+        V s = First ? hn::Mul(previous[0], f[u][0])
+                    : hn::MulAdd(previous[0], f[u][0], hn::Load(d, sum + (4 + u) * lanes));
+        for (std::size_t v = 1; v < N; ++v) s = hn::MulAdd(previous[v], f[u][v], s);
         hn::Store(s, d, sum + (4 + u) * lanes);
       }
       const V a1 = hn::Set(d, a[k + 1]), b1 = hn::Set(d, b[k + 1]);
@@ -167,16 +169,22 @@ HWY_INLINE void analyse_vectors(const Rows& rows, std::size_t vector, std::uint3
   }
 }
 
-// Sums of one field for the segments [begin, end) over the vectors of `rows`, from `first` on.
+// Sums of one field for the segments [begin, end) over the vectors [first, last), from the equator to the poles: the
+// first group has the earliest start, and what it leaves untouched has no sum.
 void analyse_one(const Rows& rows, std::size_t first, std::size_t last, std::uint32_t begin, std::uint32_t end,
-                 const double* cells, double* state, double* sums) {
+                 const double* cells, double* state, double* sums, bool& fresh) {
   constexpr std::size_t together = analysis_vectors;
+  const auto run = [&](auto n, std::size_t vector) HWY_ATTR {
+    if (fresh)
+      analyse_vectors<decltype(n)::value, true>(rows, vector, begin, end, cells, state, sums);
+    else
+      analyse_vectors<decltype(n)::value, false>(rows, vector, begin, end, cells, state, sums);
+    fresh = false;
+  };
   const std::size_t rest = (last - first) % together;
-  for_rest<together>(first, rest, [&](auto n, std::size_t vector) HWY_ATTR {
-    analyse_vectors<decltype(n)::value>(rows, vector, begin, end, cells, state, sums);
-  });
-  for (std::size_t vector = first + rest; vector < last; vector += together)
-    analyse_vectors<together>(rows, vector, begin, end, cells, state, sums);
+  for (std::size_t vector = last; vector >= first + together; vector -= together)
+    run(std::integral_constant<std::size_t, together>(), vector - together);
+  for_rest<together>(first, rest, run);
 }
 
 // One segment of N vectors: lambda to panel[k][vector], whose rows are panel_vectors long.
@@ -310,19 +318,21 @@ void Synthesise(const plan::Legendre& plan, const plan::Seeds& seeds, int m, int
 void AnalyseOne(const plan::Legendre& plan, const plan::Seeds& seeds, int m, const double* cells, LegendreWork& work) {
   const auto segments = std::uint32_t(plan.padded_steps(m) / int(segment));
   constexpr auto chunk_segments = std::uint32_t(chunk_steps / segment);
-  for (std::uint32_t begin = 0; begin < segments; begin += chunk_segments) {
+  const std::size_t blocks = std::size_t(plan.blocks);
+  const std::uint32_t start = std::min(segments, seeds.start[(std::size_t(m) + 1) * blocks - 1]); // of the equator
+  double *chunk = work.chunk.get(), *sums = work.sums.get();
+  std::memset(sums, 0, start * segment * 4 * sizeof(double));
+  for (std::uint32_t begin = start; begin < segments; begin += chunk_segments) {
     const std::uint32_t end = std::min(segments, begin + chunk_segments);
-    const std::size_t steps = (end - begin) * segment;
-    double* chunk = work.chunk.get();
-    std::memset(chunk, 0, steps * 4 * lanes * sizeof(double));
+    bool fresh = true;
     for_both_forms(plan, seeds, m, [&](const Rows& rows, std::size_t first, std::size_t last) HWY_ATTR {
-      analyse_one(rows, first, last, begin, end, cells, work.state.get(), chunk);
+      analyse_one(rows, first, last, begin, end, cells, work.state.get(), chunk, fresh);
     });
-    double* to = work.sums.get() + begin * segment * 4;
-    for (std::size_t i = 0; i < steps * 4; i += 8) {
+    double* to = sums + begin * segment * 4;
+    for (std::size_t i = 0; i < (end - begin) * segment * 4; i += 8) {
       V sum[8];
       for (std::size_t j = 0; j < 8; ++j) sum[j] = hn::Load(d, chunk + (i + j) * lanes);
-      add_lane_sums(sum, to + i);
+      store_lane_sums(sum, to + i);
     }
   }
 }
@@ -332,6 +342,7 @@ template <int Fields>
 std::size_t analyse_several(const plan::Legendre& plan, const plan::Seeds& seeds, int m, const double* cells,
                             LegendreWork& work) {
   constexpr std::size_t columns = Tile<Fields>::columns;
+  std::fill_n(work.sums.get(), std::size_t(plan.padded_steps(m)) * 4 * Fields, 0.0);
   for_both_forms(plan, seeds, m, [&](const Rows& rows, std::size_t first, std::size_t end) HWY_ATTR {
     analyse_panels<Fields>(rows, first, end, cells, work.chunk.get(), work.sums.get(),
                            std::size_t(plan.padded_steps(m)) * columns);
@@ -364,18 +375,18 @@ std::size_t sums_doubles(const plan::Legendre& plan) {
 std::size_t state_doubles(const plan::Legendre& plan) {
   return std::size_t(plan.blocks) * 2 * plan::block_pairs;
 }
-constexpr std::size_t most_chunk_doubles = 4096;
+constexpr std::size_t chunk_doubles = 3200; // a panel of 40 blocks with its state; 3072 for sums
 
 } // namespace
 
 LegendreWork::LegendreWork(const plan::Legendre& plan)
     : sums(hwy::AllocateAligned<double>(sums_doubles(plan))), state(hwy::AllocateAligned<double>(state_doubles(plan))),
-      chunk(hwy::AllocateAligned<double>(most_chunk_doubles)) {
+      chunk(hwy::AllocateAligned<double>(chunk_doubles)) {
   if (!sums || !state || !chunk) throw std::bad_alloc();
 }
 
 std::size_t LegendreWork::bytes(const plan::Legendre& plan) {
-  return (sums_doubles(plan) + state_doubles(plan) + most_chunk_doubles) * sizeof(double);
+  return (sums_doubles(plan) + state_doubles(plan) + chunk_doubles) * sizeof(double);
 }
 
 void legendre_synthesis(const plan::Legendre& plan, const plan::Seeds& seeds, int m, int fields,
@@ -392,7 +403,6 @@ void legendre_analysis(const plan::Legendre& plan, const plan::Seeds& seeds, int
                        LegendreWork& work, std::complex<double>* coefficients, std::size_t stride) {
   const std::size_t count = std::size_t(plan.lmax - m) + 1, steps = std::size_t(plan.padded_steps(m));
   double* sums = work.sums.get();
-  std::memset(sums, 0, steps * 4 * std::size_t(fields) * sizeof(double));
   std::size_t columns = 4; // of a tile
   if (fields == 1)
     HWY_DYNAMIC_DISPATCH(AnalyseOne)(plan, seeds, m, cells, work);

@@ -31,7 +31,8 @@ class GpuBackend final : public Backend {
 public:
   explicit GpuBackend(const GpuOptions& options)
       : gpu_(options.device, options.validation), facts_(facts_of(gpu_.facts())),
-        shape_(engine::moments_shape(gpu_.facts(), gpu::shape_from(options))) {}
+        shape_(engine::moments_shape(gpu_.facts(), gpu::shape_from(options))),
+        transform_shape_(engine::sphere_transform_shape(gpu_.facts(), gpu::transform_shape_from(options))) {}
 
   const DeviceFacts& facts() const override { return facts_; }
 
@@ -44,11 +45,11 @@ public:
   }
 
   std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) override {
-    return gpu::translated([&] { return gpu::sphere_transform(gpu_, grid, lmax); });
+    return gpu::translated([&] { return gpu::sphere_transform(gpu_, transform_shape_, grid, lmax); });
   }
 
   MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
-    return gpu::sphere_transform_memory(gpu_.facts(), grid, lmax, fields);
+    return gpu::sphere_transform_memory(gpu_.facts(), transform_shape_, grid, lmax, fields);
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {
@@ -65,6 +66,7 @@ private:
   engine::Gpu gpu_;
   DeviceFacts facts_;
   engine::MomentsShape shape_;
+  engine::SphereTransformShape transform_shape_;
 };
 
 } // namespace

@@ -96,38 +96,6 @@ Legendre recurrence(int lmax, unsigned threads) {
   return plan;
 }
 
-void prepare_synthesis(const Legendre& plan, int m, std::span<const std::complex<double>> coefficients, double* q,
-                       std::size_t stride) {
-  const double* alpha = &plan.alpha[plan.offset[std::size_t(m)]];
-  const double* e = &plan.e[plan.e_offset[std::size_t(m)]];
-  const std::size_t steps = std::size_t(plan.steps(m)), padded = std::size_t(plan.padded_steps(m));
-  const double keep = m == 0 ? 0 : 1; // of imaginary parts
-  const auto value = [&](std::size_t j) { return j < coefficients.size() ? coefficients[j] : std::complex<double>(); };
-  for (std::size_t k = 0; k < steps; ++k, q += stride) {
-    const std::complex<double> even = coefficients[2 * k], odd = value(2 * k + 1), next = value(2 * k + 2);
-    q[0] = alpha[k] * (e[2 * k + 1] * even.real() + e[2 * k + 2] * next.real());
-    q[1] = keep * alpha[k] * (e[2 * k + 1] * even.imag() + e[2 * k + 2] * next.imag());
-    q[2] = alpha[k] * odd.real();
-    q[3] = keep * alpha[k] * odd.imag();
-  }
-  for (std::size_t k = steps; k < padded; ++k, q += stride) q[0] = q[1] = q[2] = q[3] = 0;
-}
-
-void finish_analysis(const Legendre& plan, int m, const double* r, std::size_t stride,
-                     std::span<std::complex<double>> coefficients) {
-  const double* alpha = &plan.alpha[plan.offset[std::size_t(m)]];
-  const double* e = &plan.e[plan.e_offset[std::size_t(m)]];
-  const std::size_t steps = std::size_t(plan.steps(m));
-  const double keep = m == 0 ? 0 : 1;
-  std::complex<double> before; // alpha_{k-1} re_{k-1}
-  for (std::size_t k = 0; k < steps; ++k, r += stride) {
-    const std::complex<double> here(alpha[k] * r[0], keep * alpha[k] * r[1]);
-    coefficients[2 * k] = e[2 * k + 1] * here + e[2 * k] * before;
-    if (2 * k + 1 < coefficients.size()) coefficients[2 * k + 1] = {alpha[k] * r[2], keep * alpha[k] * r[3]};
-    before = here;
-  }
-}
-
 double active_steps(const Legendre& plan, const Seeds& seeds) {
   double steps = 0;
   for (int m = 0; m <= plan.lmax; ++m) {

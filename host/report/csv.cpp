@@ -1,4 +1,4 @@
-#include "host/report/number.hpp"
+#include "host/io/number.hpp"
 #include "host/report/result.hpp"
 #include "host/version.hpp"
 

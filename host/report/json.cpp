@@ -1,6 +1,6 @@
-#include "host/report/number.hpp"
+#include "host/io/number.hpp"
+#include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
-#include "host/version.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -33,16 +33,6 @@ ordered_json json_of(const Body& body) {
           {"centre_of_mass", json_of(body.centre_of_mass)},
           {"bounding_box", {json_of(body.box.min), json_of(body.box.max)}},
           {"brillouin_radius", body.brillouin_radius}};
-}
-
-ordered_json json_of(const DeviceFacts& device) {
-  return {{"path", device.type == "cpu" ? "cpu" : "vulkan"},
-          {"name", device.name},
-          {"type", device.type},
-          {"driver", device.driver},
-          {"api", device.api},
-          {"threads", device.threads},
-          {"subgroup_size", device.subgroup}};
 }
 
 ordered_json json_of(const Timings& t, const RunReport& run) {
@@ -98,7 +88,7 @@ void write_coefficients(const Coefficients& q, const Sink& sink) {
 
 // An object's members without the closing brace, so that more can follow.
 std::string open_members(const ordered_json& object) {
-  std::string text = object.dump(1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string text = json_text(object);
   text.pop_back();
   text.erase(text.find_last_not_of("\n ") + 1);
   return text;
@@ -112,11 +102,11 @@ std::uint64_t json_bytes(int lmax) {
 
 void write_json(const ExpandResult& result, const Sink& sink) {
   const ordered_json head = {{"schema", "cowgpu.result.v1"},
-                             {"program", {{"name", "cowgpu"}, {"version", version}}},
+                             {"program", program_json()},
                              {"command", result.command},
                              {"created", result.created},
                              {"mesh", json_of(result.body)},
-                             {"device", json_of(result.device)},
+                             {"device", device_json(result.device)},
                              {"notes", result.notes},
                              {"tensors",
                               {{"origin", json_of(result.body.origin)},

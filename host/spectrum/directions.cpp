@@ -110,6 +110,25 @@ std::complex<double> phase(const Direction& direction, int m) {
   return {c - rest * s, s + rest * c};
 }
 
+// Adds Re(sum turn) to a field, and its derivative by phi where there is a place for it.
+void add_order(int m, std::complex<double> sum, std::complex<double> turn, double& value, double* d_phi) {
+  value += sum.real() * turn.real() - sum.imag() * turn.imag();
+  if (d_phi) *d_phi -= m * (sum.real() * turn.imag() + sum.imag() * turn.real());
+}
+
+// From the sums of the fields, of their X and Y in turn and of their d_phi.
+template <class Sum>
+void store(const Direction& direction, std::size_t index, std::size_t directions, std::size_t fields,
+           DirectionValues& result, const Sum& sum) {
+  const std::complex<double> meridian = phase(direction, 1);
+  for (std::size_t f = 0, to = index; f < fields; ++f, to += directions) {
+    result.values[to] = sum(f);
+    if (result.d_phi.empty()) continue;
+    result.d_theta[to] = meridian.real() * sum(fields + 2 * f) + meridian.imag() * sum(fields + 2 * f + 1);
+    result.d_phi[to] = sum(3 * fields + f);
+  }
+}
+
 } // namespace
 
 // Directions side by side, all nearer to the poles or all nearer to the equator.
@@ -178,8 +197,8 @@ Direction direction(const Vec3& r) {
 }
 
 DirectionSynthesis::DirectionSynthesis(const SphereCoefficients& coefficients, bool derivatives, unsigned threads)
-    : fields_(coefficients.fields), summed_(coefficients.fields * (derivatives ? 3 : 1)), derivatives_(derivatives),
-      threads_(threads) {
+    : cap_(std::clamp(coefficients.lmax, 0, largest_grid_degree)), fields_(coefficients.fields),
+      summed_(coefficients.fields * (derivatives ? 3 : 1)), derivatives_(derivatives), threads_(threads) {
   const int lmax = coefficients.lmax;
   if (lmax < 0 || lmax > largest_grid_degree || fields_ < 0)
     throw Error(Fault::bad_argument, fmt::format("synthesis of {} fields to degree {}: degrees 0 to {} are possible",
@@ -197,7 +216,12 @@ DirectionSynthesis::DirectionSynthesis(const SphereCoefficients& coefficients, b
     });
   };
   prepare(coefficients, 0);
-  if (derivatives) prepare(tilts(coefficients), fields_);
+  cap_.add(coefficients);
+  if (derivatives) {
+    const SphereCoefficients both = tilts(coefficients);
+    prepare(both, fields_);
+    cap_.add(both);
+  }
   plan_.alpha = {};
   plan_.e = {};
 }
@@ -216,26 +240,33 @@ DirectionValues DirectionSynthesis::at(std::span<const Direction> directions, Mo
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::sort(order.begin(), order.end(),
             [&](std::size_t i, std::size_t j) { return sine(i) > sine(j) || (sine(i) == sine(j) && i < j); });
-  const auto polar = std::size_t(
-      std::partition_point(order.begin(), order.end(),
-                           [&](std::size_t i) { return sine(i) >= std::numbers::sqrt2_v<long double> / 2; }) -
-      order.begin());
+  const auto first_below = [&](long double limit) {
+    return std::size_t(
+        std::partition_point(order.begin(), order.end(), [&](std::size_t i) { return sine(i) > limit; }) -
+        order.begin());
+  };
+  const std::size_t cap = first_below(cap_.sine()); // from here on
+  const std::size_t polar = std::min(cap, first_below(std::numbers::sqrt2_v<long double> / 2));
   const unsigned threads = threads_ ? threads_ : all_threads();
   const std::size_t size = n >= 2 * lanes * threads ? lanes : few_lanes;
   const auto blocks = [size](std::size_t count) { return (count + size - 1) / size; };
-  const std::size_t equatorial = blocks(polar), tasks = equatorial + blocks(n - polar);
+  const std::size_t equatorial = blocks(polar), lower = equatorial + blocks(cap - polar), tasks = lower + (n - cap);
 
   std::vector<Block> spaces(std::min<std::size_t>(threads, tasks));
   std::atomic<std::size_t> finished{0};
   parallel_for(threads, tasks, [&](std::size_t task, unsigned thread) {
     check_stop(monitor);
-    Block& block = spaces[thread];
-    block.polar = task >= equatorial;
-    const std::size_t first = block.polar ? polar + (task - equatorial) * size : task * size;
-    block.count = std::min(size, (block.polar ? n : polar) - first);
-    block.used = (block.count + few_lanes - 1) / few_lanes * few_lanes;
-    std::copy_n(order.begin() + std::ptrdiff_t(first), block.count, block.index.begin());
-    evaluate(block, directions, result);
+    if (task >= lower) {
+      evaluate_polar(order[cap + (task - lower)], directions, result);
+    } else {
+      Block& block = spaces[thread];
+      block.polar = task >= equatorial;
+      const std::size_t first = block.polar ? polar + (task - equatorial) * size : task * size;
+      block.count = std::min(size, (block.polar ? cap : polar) - first);
+      block.used = (block.count + few_lanes - 1) / few_lanes * few_lanes;
+      std::copy_n(order.begin() + std::ptrdiff_t(first), block.count, block.index.begin());
+      evaluate(block, directions, result);
+    }
     const std::size_t now = ++finished;
     if (thread == 0) monitor.progress("synthesis at directions", double(now) / double(tasks));
   });
@@ -297,22 +328,30 @@ void DirectionSynthesis::evaluate(Block& block, std::span<const Direction> direc
       for (std::size_t f = 0; f < summed; ++f) {
         const auto& s = block.sums[f].value;
         const double re = s[0][i] + block.x[i] * s[2][i], im = s[1][i] + block.x[i] * s[3][i];
-        block.results[f][i] += re * turn.real() - im * turn.imag();
-        if (derivatives_ && f < fields) block.results[summed + f][i] -= m * (re * turn.imag() + im * turn.real());
+        const bool with_phi = derivatives_ && f < fields;
+        add_order(m, {re, im}, turn, block.results[f][i], with_phi ? &block.results[summed + f][i] : nullptr);
       }
     }
   }
 
   for (std::size_t i = 0; i < block.count; ++i)
-    for (std::size_t f = 0; f < fields; ++f) {
-      const std::size_t to = f * n + block.index[i];
-      result.values[to] = block.results[f][i];
-      if (!derivatives_) continue;
-      const std::complex<double> meridian = phase(directions[block.index[i]], 1);
-      result.d_theta[to] =
-          meridian.real() * block.results[fields + 2 * f][i] + meridian.imag() * block.results[fields + 2 * f + 1][i];
-      result.d_phi[to] = block.results[summed + f][i];
-    }
+    store(directions[block.index[i]], block.index[i], n, fields, result,
+          [&](std::size_t f) { return block.results[f][i]; });
+}
+
+void DirectionSynthesis::evaluate_polar(std::size_t index, std::span<const Direction> directions,
+                                        DirectionValues& result) const {
+  const Direction& at = directions[index];
+  const std::size_t fields = std::size_t(fields_), summed = std::size_t(summed_);
+  std::vector<std::complex<double>> sums(summed);
+  std::vector<double> results(summed + fields);
+  for (int m = 0; m < cap_.orders(); ++m) {
+    cap_.sum(m, at.cosine, at.sine, sums.data());
+    const std::complex<double> turn = (m == 0 ? 1.0 : 2.0) * phase(at, m);
+    for (std::size_t f = 0; f < summed; ++f)
+      add_order(m, sums[f], turn, results[f], f < fields ? &results[summed + f] : nullptr);
+  }
+  store(at, index, directions.size(), fields, result, [&](std::size_t f) { return results[f]; });
 }
 
 } // namespace cowgpu

@@ -1,0 +1,210 @@
+#include "host/cli/commands.hpp"
+
+#include "host/clock.hpp"
+#include "host/error.hpp"
+#include "host/io/grid_file.hpp"
+#include "host/report/json_parts.hpp"
+#include "host/report/result.hpp"
+#include "host/spectrum/roundtrip.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include <algorithm>
+
+namespace cowgpu::cli {
+namespace {
+
+struct Options {
+  int lmax = 0;
+  int fields = 1;
+  std::string grid = "gl";
+  std::uint64_t seed = 1;
+  int runs = 1;
+  bool json = false;
+  bool dry_run = false;
+};
+
+struct Outcome {
+  SphereGrid grid;
+  DeviceFacts device;
+  MemoryNeed memory;
+  std::string note;
+  double setup_seconds = 0;
+  TransformReport synthesis, analysis; // of the run with the median time
+  CoefficientError error;
+  double bound = 0;
+
+  bool passed() const { return error.max <= bound; } // NaN fails
+};
+
+TransformReport median(std::vector<TransformReport> reports) {
+  const auto middle = reports.begin() + std::ptrdiff_t(reports.size() / 2);
+  std::nth_element(reports.begin(), middle, reports.end(),
+                   [](const TransformReport& a, const TransformReport& b) { return a.seconds < b.seconds; });
+  return *middle;
+}
+
+std::uint64_t peak_resident() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::uint64_t(usage.ru_maxrss) * 1024;
+}
+
+void compute(const Options& options, const Common& common, Backend& backend, Outcome& outcome) {
+  const auto start = Clock::now();
+  const auto transform = backend.sphere_transform(outcome.grid, options.lmax);
+  outcome.setup_seconds += seconds_since(start);
+  const SphereCoefficients before = random_coefficients(options.lmax, options.fields, options.seed);
+  SphereCoefficients after(options.lmax, options.fields);
+  std::vector<double> values(std::size_t(options.fields) * outcome.grid.points());
+  ConsoleMonitor monitor(common.style());
+  std::vector<TransformReport> syntheses, analyses;
+  for (int i = 0; i <= options.runs; ++i) { // the first one warms up
+    TransformReport synthesis, analysis;
+    transform->synthesise(options.fields, before.values, values, monitor, &synthesis);
+    transform->analyse(options.fields, values, after.values, monitor, &analysis);
+    if (i == 0) continue;
+    syntheses.push_back(std::move(synthesis));
+    analyses.push_back(std::move(analysis));
+  }
+  monitor.clear();
+  outcome.synthesis = median(std::move(syntheses));
+  outcome.analysis = median(std::move(analyses));
+  outcome.error = compare(before, after);
+  outcome.bound = round_trip_bound(options.lmax);
+}
+
+nlohmann::ordered_json stage_json(const TransformReport& report) {
+  nlohmann::ordered_json kernels = nlohmann::ordered_json::array();
+  for (const KernelTime& k : report.kernels)
+    kernels.push_back({{"kernel", k.kernel}, {"dispatches", k.dispatches}, {"seconds", k.seconds}});
+  return {{"legendre_seconds", report.legendre_seconds},
+          {"fourier_seconds", report.fourier_seconds},
+          {"legendre_flops", report.legendre_flops},
+          {"fourier_flops", report.fourier_flops},
+          {"kernels", kernels}};
+}
+
+void write_json(const Options& options, const Common& common, const Outcome& o) {
+  nlohmann::ordered_json notes = nlohmann::ordered_json::array();
+  if (!o.note.empty()) notes.push_back(o.note);
+  const nlohmann::ordered_json all = {
+      {"schema", "cowgpu.roundtrip.v1"},
+      {"program", program_json()},
+      {"command", common.command},
+      {"created", utc_now()},
+      {"device", device_json(o.device)},
+      {"notes", notes},
+      {"grid", {{"kind", name(o.grid.kind)}, {"rings", o.grid.rings}, {"ring_length", o.grid.ring_length}}},
+      {"lmax", options.lmax},
+      {"fields", options.fields},
+      {"seed", options.seed},
+      {"runs", options.runs},
+      {"max_error", o.error.max},
+      {"rms_error", o.error.rms},
+      {"bound", o.bound},
+      {"passed", o.passed()},
+      {"setup_seconds", o.setup_seconds},
+      {"synthesis_seconds", o.synthesis.seconds},
+      {"analysis_seconds", o.analysis.seconds},
+      {"synthesis", stage_json(o.synthesis)},
+      {"analysis", stage_json(o.analysis)},
+      {"memory",
+       {{"host_bytes", o.memory.host}, {"device_bytes", o.memory.device}, {"peak_resident_bytes", peak_resident()}}}};
+  write_stdout(json_text(all) + "\n");
+}
+
+std::string memory_text(const MemoryNeed& need) {
+  return fmt::format("at most {} MiB on the host and {} MiB on the device", (need.host >> 20) + 1,
+                     (need.device + (1 << 20) - 1) >> 20);
+}
+
+void write_head(const Options& options, const Outcome& o) {
+  write_stdout(fmt::format("round trip: {} of random coefficients to degree {} (uniform in [-0.5, 0.5], seed {})\n",
+                           options.fields == 1 ? "1 field" : fmt::format("{} fields", options.fields), options.lmax,
+                           options.seed));
+  write_stdout(fmt::format("grid: {}, {} rings of {} points\n", name(o.grid.kind), o.grid.rings, o.grid.ring_length));
+  if (!o.note.empty()) write_stdout("note: " + o.note + "\n");
+  write_stdout("device: " + device_line(o.device) + "\n");
+}
+
+void write_text(const Options& options, const Outcome& o) {
+  write_head(options, o);
+  write_stdout(fmt::format("  {:<18} {:.2e}  largest error over largest coefficient (bound {:.1e}: {})\n", "max_error",
+                           o.error.max, o.bound, o.passed() ? "passed" : "FAILED"));
+  write_stdout(fmt::format("  {:<18} {:.2e}  root mean square, relative\n", "rms_error", o.error.rms));
+  const auto seconds = [](const char* what, double value, const char* remark) {
+    write_stdout(fmt::format("  {:<18} {:.6f} s{}\n", what, value, remark));
+  };
+  seconds("set-up", o.setup_seconds, "  nodes, weights, recurrences");
+  seconds("synthesis", o.synthesis.seconds,
+          options.runs == 1 ? "  after one to warm up" : "  median after one to warm up");
+  seconds("analysis", o.analysis.seconds, "");
+  write_stdout(
+      fmt::format("  {:<18} {}; peak of the process {} MiB\n", "memory", memory_text(o.memory), peak_resident() >> 20));
+}
+
+void run(const Options& options, const Common& common) {
+  Outcome outcome;
+  const auto backend = open_backend(common, &outcome.note);
+  outcome.device = backend->facts();
+  if (!outcome.note.empty() && !common.quiet) say(fmt::format("cowgpu: {}\n", outcome.note));
+  const auto start = Clock::now();
+  outcome.grid = make_grid(*grid_kind_named(options.grid), options.lmax);
+  outcome.setup_seconds = seconds_since(start);
+  outcome.memory = backend->sphere_transform_memory(outcome.grid, options.lmax, options.fields);
+  outcome.memory.host +=
+      std::uint64_t(options.fields) * (8 * outcome.grid.points() + 32 * SphereCoefficients::count(options.lmax));
+  check_memory(outcome.memory, *backend, "lower --lmax or --fields");
+  if (options.dry_run) {
+    write_head(options, outcome);
+    write_stdout("memory: " + memory_text(outcome.memory) + "\n");
+    return;
+  }
+  compute(options, common, *backend, outcome);
+  if (options.json)
+    write_json(options, common, outcome);
+  else
+    write_text(options, outcome);
+  if (outcome.passed()) return;
+  flush_stdout();
+  throw Error(Fault::check_failed,
+              fmt::format("the round trip changed coefficients by {:.1e} of the largest, more than "
+                          "{:.1e}: do not trust this device; try --device cpu",
+                          outcome.error.max, outcome.bound));
+}
+
+} // namespace
+
+void add_roundtrip(CLI::App& transform, Common& common) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = transform.add_subcommand(
+      "roundtrip", "Random coefficients to a grid and back: how exact and how fast; exit 1 if out of bounds");
+  add_degree_option(*command, options->lmax, "Largest degree, 0 to 8192");
+  command->get_option("--lmax")->required();
+  command->add_option("--fields", options->fields, "Fields transformed together")
+      ->check(CLI::Range(1, most_fields))
+      ->capture_default_str();
+  add_grid_option(*command, options->grid,
+                  "gl (Gauss-Legendre), cc (Clenshaw-Curtis), dh (Driscoll-Healy, n x 2n), dh1 "
+                  "(n x n)");
+  command->get_option("--grid")->capture_default_str();
+  command->add_option("--seed", options->seed, "Of the coefficients: std::mt19937_64, uniform in [-0.5, 0.5]")
+      ->capture_default_str();
+  command->add_option("--runs", options->runs, "Timed runs after one to warm up; medians are shown")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", options->json,
+                    "As JSON on stdout (data/schemas/cowgpu.roundtrip.v1.json), times in seconds");
+  command->add_flag("--dry-run", options->dry_run, "Print the grid and the memory it needs, and stop");
+  add_common_options(*command, common);
+  command->footer(
+      "max_error is the largest error over the largest coefficient. It may be 1e-13 up to degree 64, 5e-13 at "
+      "512,\n1e-12 at 1024, 3e-12 at 2048, 1e-11 at 4096; between these and beyond, a straight line in the "
+      "logarithms.\nExample: cowgpu transform roundtrip --lmax 511 --fields 3");
+  command->callback([options, &common] { run(*options, common); });
+}
+
+} // namespace cowgpu::cli

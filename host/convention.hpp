@@ -1,0 +1,72 @@
+// Conventions of spherical-harmonic coefficients, and the way between them.
+#pragma once
+
+#include "host/sphere_coefficients.hpp"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace cowgpu {
+
+/// What the real harmonics U_lm = K_lm P_lm(cos theta) {cos m phi, sin m phi} are scaled to, by their mean square over the
+/// sphere or by K_lm (P_lm without phase: P_11 = sin theta).
+enum class Normalisation {
+  orthonormal,  ///< integral of U^2 over the sphere = 1
+  four_pi,      ///< integral of U^2 = 4 pi: geodesy
+  schmidt,      ///< integral of U^2 = 4 pi / (2l + 1): Schmidt semi-normalised, geomagnetism
+  unnormalised, ///< K_lm = 1
+};
+
+/// Whether the harmonics carry the Condon-Shortley phase (-1)^m.
+enum class Phase { condon_shortley, none };
+
+/// "orthonormal", "4pi", "schmidt", "unnormalised".
+std::string_view name(Normalisation normalisation);
+/// "cs", "none".
+std::string_view name(Phase phase);
+/// By the names above, or by pyshtools' "ortho" and "unnorm"; nothing for another word.
+std::optional<Normalisation> normalisation_named(std::string_view word);
+std::optional<Phase> phase_named(std::string_view word);
+
+/// A convention of real coefficients. The default fits SphereCoefficients.
+struct Convention {
+  Normalisation normalisation = Normalisation::orthonormal;
+  Phase phase = Phase::condon_shortley;
+  friend bool operator==(const Convention&, const Convention&) = default;
+};
+
+/// Coefficients C_lm, S_lm of real fields
+///   f = sum_{l, m >= 0} s_m K_lm P_lm(cos theta) (C_lm cos m phi + S_lm sin m phi),
+/// s_m = (-1)^m with the Condon-Shortley phase and 1 without it. Order as in SphereCoefficients; S_l0 = 0.
+struct RealCoefficients {
+  int lmax = 0;
+  int fields = 1;
+  Convention convention;
+  std::vector<double> cosine, sine; ///< fields * SphereCoefficients::count(lmax) each
+
+  RealCoefficients() = default;
+  RealCoefficients(int lmax_, int fields_, Convention convention_)
+      : lmax(lmax_), fields(fields_), convention(convention_),
+        cosine(std::size_t(fields_) * SphereCoefficients::count(lmax_)), sine(cosine.size()) {}
+
+  /// Where (l, m) of field f stands in both.
+  std::size_t index(int f, int l, int m) const {
+    return std::size_t(f) * SphereCoefficients::count(lmax) + SphereCoefficients::index(lmax, l, m);
+  }
+};
+
+/// C_lm - i S_lm = k_lm a_lm with
+///   k_lm = t_m sqrt(2 - delta_m0) N_l, t_m = 1 with the phase and (-1)^m without,
+///   N_l = 1 (orthonormal), 1 / sqrt(4 pi) (4 pi), sqrt((2l + 1) / 4 pi) (Schmidt),
+///   unnormalised: sqrt((2 - delta_m0) (2l + 1) / 4 pi * (l - m)! / (l + m)!) in the place of N_l.
+/// There and back is right to 2 units in the last place. Imaginary parts of a_l0 are ignored.
+///
+/// Throws Error(bad_argument) where a coefficient that is not zero has no normal double in the convention: unnormalised
+/// coefficients underflow from about degree 150 on, and their harmonics overflow there; the others always fit, unless a
+/// value is within a factor 100 of the largest double.
+RealCoefficients to_real(const SphereCoefficients& coefficients, Convention convention);
+/// The inverse, with the same error.
+SphereCoefficients to_complex(const RealCoefficients& coefficients);
+
+} // namespace cowgpu

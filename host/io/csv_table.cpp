@@ -1,0 +1,131 @@
+#include "host/io/csv_table.hpp"
+
+#include "host/io/file.hpp"
+#include "host/io/shown.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace cowgpu {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") + 1 - first);
+}
+
+// Lines one after the other, without their ends.
+class Lines {
+public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+  std::optional<std::string_view> next() {
+    if (rest_.empty()) return {};
+    const auto end = rest_.find('\n');
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    ++number;
+    return line;
+  }
+  std::size_t number = 0;
+
+private:
+  std::string_view rest_;
+};
+
+void read_row(CsvTable& table, std::string_view line, std::size_t number) {
+  std::size_t found = 0;
+  for (;; ++found) {
+    const auto comma = line.find(',');
+    const std::string_view word = trimmed(line.substr(0, comma));
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data() + word.starts_with('+'), word.data() + word.size(), value);
+    if (error == std::errc::result_out_of_range)
+      table.fail(Fault::file_syntax, number, fmt::format("'{}' has no place in a double", shown(word)));
+    if (error != std::errc() || end != word.data() + word.size() || word.empty())
+      table.fail(Fault::file_syntax, number, fmt::format("a number expected, found '{}'", shown(word)));
+    if (!std::isfinite(value))
+      table.fail(Fault::file_syntax, number, fmt::format("'{}': every value must be a finite number", shown(word)));
+    if (found < table.columns.size()) table.values.push_back(value);
+    if (comma == std::string_view::npos) break;
+    line.remove_prefix(comma + 1);
+  }
+  if (++found != table.columns.size())
+    table.fail(Fault::file_syntax, number,
+               fmt::format("{} numbers expected, as many as line {} has names, found {}", table.columns.size(),
+                           table.header_line, found));
+}
+
+} // namespace
+
+void CsvTable::fail(Fault fault, std::size_t line, const std::string& sentence) const {
+  throw Error(fault, fmt::format("{}:{}: {}", name, line, sentence));
+}
+
+void CsvTable::fail_row(std::size_t row, const std::string& sentence) const {
+  fail(Fault::file_syntax, first_line + row, sentence);
+}
+
+const CsvTable::Attribute& CsvTable::attribute(const std::string& key) const {
+  const auto found = attributes.find(key);
+  if (found == attributes.end())
+    fail(Fault::file_syntax, header_line, fmt::format("above the column names a line '# {} ...' is missing", key));
+  return found->second;
+}
+
+int CsvTable::integer(const std::string& key, int smallest, int largest) const {
+  const Attribute& a = attribute(key);
+  int value = 0;
+  const auto [end, error] = std::from_chars(a.text.data(), a.text.data() + a.text.size(), value);
+  if (error != std::errc() || end != a.text.data() + a.text.size() || value < smallest || value > largest)
+    fail(Fault::file_syntax, a.line,
+         fmt::format("{} is '{}'; from {} to {} are possible", key, shown(a.text), smallest, largest));
+  return value;
+}
+
+CsvTable read_csv(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  std::string_view text = bytes;
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  CsvTable table;
+  table.name = path.string();
+  Lines lines(text);
+  std::optional<std::string_view> line;
+  while ((line = lines.next()) && (line->starts_with('#') || trimmed(*line).empty())) {
+    const std::string_view comment = trimmed(trimmed(*line).substr(line->starts_with('#')));
+    const auto space = comment.find_first_of(" \t");
+    if (space == std::string_view::npos) continue;
+    table.attributes.try_emplace(std::string(comment.substr(0, space)),
+                                 CsvTable::Attribute{std::string(trimmed(comment.substr(space))), lines.number});
+  }
+  if (!line) table.fail(Fault::file_truncated, lines.number, "the file ends before the line of column names");
+  table.header_line = lines.number;
+  for (std::string_view rest = *line;;) {
+    const auto comma = rest.find(',');
+    const std::string_view word = trimmed(rest.substr(0, comma));
+    if (word.empty() || std::any_of(word.begin(), word.end(), [](char c) { return c < ' ' || c > '~'; }))
+      table.fail(Fault::file_format, lines.number,
+                 fmt::format("column names between commas expected, found '{}'", shown(*line)));
+    table.columns.emplace_back(word);
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  table.first_line = lines.number + 1;
+  std::size_t gap = 0;
+  while ((line = lines.next())) {
+    if (trimmed(*line).empty()) {
+      if (!gap) gap = lines.number;
+      continue;
+    }
+    if (gap) table.fail(Fault::file_syntax, gap, "an empty line among the rows");
+    read_row(table, *line, lines.number);
+  }
+  return table;
+}
+
+} // namespace cowgpu

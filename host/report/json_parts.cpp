@@ -1,0 +1,36 @@
+#include "host/report/json_parts.hpp"
+
+#include "host/version.hpp"
+
+#include <fmt/chrono.h>
+#include <nlohmann/json.hpp>
+
+#include <ctime>
+
+namespace cowgpu {
+
+using nlohmann::ordered_json;
+
+ordered_json device_json(const DeviceFacts& device) {
+  return {{"path", device.type == "cpu" ? "cpu" : "vulkan"},
+          {"name", device.name},
+          {"type", device.type},
+          {"driver", device.driver},
+          {"api", device.api},
+          {"threads", device.threads},
+          {"subgroup_size", device.subgroup}};
+}
+
+ordered_json program_json() {
+  return {{"name", "cowgpu"}, {"version", version}};
+}
+
+std::string json_text(const ordered_json& document) {
+  return document.dump(1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string utc_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+} // namespace cowgpu

@@ -1,0 +1,21 @@
+// Parts that several JSON documents share.
+#pragma once
+
+#include "host/backend.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace cowgpu {
+
+/// The member `device`.
+nlohmann::ordered_json device_json(const DeviceFacts& device);
+/// The member `program`.
+nlohmann::ordered_json program_json();
+/// A document's text, indented by one; what is not UTF-8 is replaced.
+std::string json_text(const nlohmann::ordered_json& document);
+/// Now, UTC, ISO 8601.
+std::string utc_now();
+
+} // namespace cowgpu
