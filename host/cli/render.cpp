@@ -44,8 +44,10 @@ void run(const Options& options, const Common& common) {
   }
   for (RenderPanel& panel : scene.panels) panel.height = height;
 
-  std::string note;
-  const auto backend = open_backend(common, &note);
+  // No Vulkan kernel draws so far: a device is opened only if it is asked for.
+  const auto backend = common.device == "auto" ? make_cpu_backend(common.threads) : open_backend(common, nullptr);
+  if (backend->facts().type != "cpu" && !common.quiet)
+    say(fmt::format("cowgpu: pictures are made on the CPU; {} is not used\n", backend->facts().name));
   ConsoleMonitor monitor(common.style());
   const auto start = Clock::now();
   const Image image = backend->render(scene, monitor);
