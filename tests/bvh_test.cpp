@@ -157,8 +157,8 @@ TEST_CASE("nested boxes and balls are as far apart as they are", "[surface-dista
   const RawMesh inner = test::box({1, 1, 1}), outer = test::box({1.2, 1.2, 1.2}, {-0.1, -0.1, -0.1});
   const SurfaceDistance boxes =
       surface_distance(inner.vertices, inner.faces, outer.vertices, outer.faces, 5000, 2, silent);
-  CHECK(boxes.forth.largest == Approx(0.1).epsilon(1e-14));
-  CHECK(boxes.forth.rms == Approx(0.1).epsilon(1e-14));
+  CHECK(boxes.forth.largest == Approx(0.1).epsilon(1e-13));
+  CHECK(boxes.forth.rms == Approx(0.1).epsilon(1e-13));
   CHECK(boxes.back.largest == Approx(0.1 * std::sqrt(3.0)).epsilon(1e-14));
   // On a side of 1.2: over the inner square 0.01, over the four strips of 0.1 the mean of 0.01 + s^2, and the corners.
   const double strip = 0.01 + 0.01 / 3, corner = 0.01 + 0.02 / 3;

@@ -74,7 +74,7 @@ TEST_CASE("an ellipsoid of degree 1 comes back with its closed-form volume, cent
   e.origin = {0.1, 0.1, 0.1};
   set_ellipsoid(e, axes, centre);
   for (const int order : {1, 2, 7, 12})
-    check_measures(measure(e, SurfaceFields::xyz, order, *backend, silent), axes, centre, e.origin, 4e-15);
+    check_measures(measure(e, SurfaceFields::xyz, order, *backend, silent), axes, centre, e.origin, 3e-15);
 
   const SphereTriangulation sphere = icosphere(4);
   const TriangleSurface surface = reconstruct(e, SurfaceFields::xyz, 5, sphere, 2, silent);
@@ -86,8 +86,8 @@ TEST_CASE("an ellipsoid of degree 1 comes back with its closed-form volume, cent
     worst = std::max(worst, (surface.vertices[v] - centre - axes.cwiseProduct(d)).norm());
     tilt = std::max(tilt, (surface.normals[v] - d.cwiseQuotient(axes).normalized()).norm());
   }
-  check_at_most(worst, 4e-15, "vertices");
-  check_at_most(tilt, 1e-2, "normals");
+  check_at_most(worst, 3e-15, "vertices");
+  check_at_most(tilt, 4e-2, "normals");
   // Triangles with corners on an ellipsoid hold less than it does, by the square of their size.
   const double inside = volume(surface.vertices, surface.faces) / (4 * pi / 3 * axes.prod());
   CHECK(inside < 1);
@@ -112,7 +112,7 @@ TEST_CASE("a grid and its own directions give the same closed surface", "[recons
     double worst = 0;
     REQUIRE(a.vertices.size() == b.vertices.size());
     for (std::size_t v = 0; v < a.vertices.size(); ++v) worst = std::max(worst, (a.vertices[v] - b.vertices[v]).norm());
-    check_at_most(worst, 2e-14, "grid against directions");
+    check_at_most(worst, 8e-15, "grid against directions");
   }
   // Closed, of genus 0 and outwards: what ManifoldSurface asks for.
   RawMesh mesh;
@@ -137,7 +137,7 @@ TEST_CASE("order 0 is the spherical cow, whatever the fields", "[reconstruct]") 
   for (const SurfaceFields fields : {SurfaceFields::xyz, SurfaceFields::f}) {
     const TriangleSurface ball = reconstruct(e, fields, 0, icosphere(1), 1, silent);
     for (const Vec3& v : ball.vertices) CHECK((v - e.origin).norm() == Approx(0.5825).epsilon(1e-14));
-    check_measures(measure(e, fields, 0, *backend, silent), Vec3::Constant(0.5825), e.origin, e.origin, 4e-15);
+    check_measures(measure(e, fields, 0, *backend, silent), Vec3::Constant(0.5825), e.origin, e.origin, 3e-15);
   }
   CHECK_THAT(describe_order(e, SurfaceFields::xyz, 0), Catch::Contains("point at order 0 and starts at order 1"));
   CHECK_THAT(describe_order(e, SurfaceFields::f, 0), !Catch::Contains("point"));
@@ -149,7 +149,7 @@ TEST_CASE("the fields f rebuild an ellipsoid to the tail of its series", "[recon
   const Vec3 axes(1.1, 0.95, 1.0), centre(0.03, -0.02, 0.01);
   SurfaceExpansion e;
   e.coefficients = SphereCoefficients(48, 6);
-  // About its own centre, f is smooth at the poles of the sphere's angles; off it dphi would have a branch point there.
+  // Where the axes differ, dphi has no limit at the poles, and its series converges slowly.
   e.origin = centre;
   set_f(e, *backend, [&](const Vec3& d) { return Vec3(centre + axes.cwiseProduct(d)); });
   const SphereTriangulation sphere = icosphere(4);
@@ -163,8 +163,8 @@ TEST_CASE("the fields f rebuild an ellipsoid to the tail of its series", "[recon
     CHECK(worst < last);
     last = worst;
   }
-  check_at_most(last, 2e-3, "distance at order 48");
-  check_measures(measure(e, SurfaceFields::f, 48, *backend, silent), axes, centre, e.origin, 1e-4);
+  check_at_most(last, 3e-3, "distance at order 48");
+  check_measures(measure(e, SurfaceFields::f, 48, *backend, silent), axes, centre, e.origin, 2e-5);
 }
 
 TEST_CASE("removed means are put back", "[reconstruct]") {
@@ -181,7 +181,7 @@ TEST_CASE("removed means are put back", "[reconstruct]") {
   double worst = 0;
   for (std::size_t v = 0; v < surface.vertices.size(); ++v)
     worst = std::max(worst, (surface.vertices[v] - 2 * (turn * sphere.directions[v])).norm());
-  check_at_most(worst, 2e-14, "vertices");
+  check_at_most(worst, 5e-15, "vertices");
 }
 
 TEST_CASE("a map that turns the surface inside out has a negative volume", "[reconstruct]") {

@@ -16,9 +16,9 @@ namespace cowgpu {
 
 /// One node of the scene.
 struct GlbPart {
-  const TriangleSurface* surface = nullptr;            ///< its name becomes the node's and the mesh's
-  Vec3 translation = Vec3::Zero();                     ///< where its origin is in the scene, mesh length unit
-  std::vector<std::pair<std::string, double>> numbers; ///< into the node's extras: {"order", 3}
+  const TriangleSurface* surface = nullptr;              ///< its name becomes the node's and the mesh's
+  Vec3 translation = Vec3::Zero();                       ///< where its origin is in the scene, mesh length unit
+  std::vector<std::pair<std::string, double>> numbers{}; ///< into the node's extras: {"order", 3}
 };
 
 /// What the file says about itself.

@@ -163,17 +163,21 @@ bool Bvh::first_hit(const Ray& ray, RayHit& hit) const {
   if (nodes_.empty()) return false;
   double limit = ray.limit;
   bool found = false;
-  // A component of 0 becomes a tiny one: 0 times infinity would be no number on a box's face.
   double inverse[3], origin[3];
+  bool parallel[3]; // to a box's sides: no quotient says where the ray is between them
   for (int c = 0; c < 3; ++c) {
-    const double d = ray.direction[c];
-    inverse[c] = std::abs(d) < 1e-100 ? std::copysign(1e100, d) : 1 / d;
+    parallel[c] = std::abs(ray.direction[c]) < 1e-100;
+    inverse[c] = parallel[c] ? 0 : 1 / ray.direction[c];
     origin[c] = ray.origin[c];
   }
   // Entry into a box; infinite if it is missed. The margin covers the rounding of both ends (Ize, JCGT 2 (2013) 12).
   const auto entry = [&](const Node& node) {
     double near = 0, far = limit;
     for (int c = 0; c < 3; ++c) {
+      if (parallel[c]) {
+        if (origin[c] < node.low[c] || origin[c] > node.high[c]) return infinity;
+        continue;
+      }
       const double t1 = (node.low[c] - origin[c]) * inverse[c], t2 = (node.high[c] - origin[c]) * inverse[c];
       near = std::max(near, std::min(t1, t2));
       far = std::min(far, std::max(t1, t2) * (1 + 8e-16));
