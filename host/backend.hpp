@@ -2,8 +2,10 @@
 #pragma once
 
 #include "host/coefficients.hpp"
+#include "host/image.hpp"
 #include "host/kernel_time.hpp"
 #include "host/monitor.hpp"
+#include "host/render.hpp"
 #include "host/sphere_samples.hpp"
 #include "host/sphere_transform.hpp"
 #include "host/types.hpp"
@@ -98,6 +100,11 @@ public:
 
   /// Upper bound of the memory sample() allocates for so many faces, its result included.
   virtual MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const = 0;
+
+  /// The scene as a picture: smooth or flat shading, light from the upper left, the light of sky and ground where the
+  /// surroundings let it through, edges with 16 samples a pixel. The same scene gives the same picture on any number of
+  /// threads. Throws what check(scene) throws, Error(interrupted).
+  virtual Image render(const RenderScene& scene, Monitor& monitor) = 0;
 
   /// Measured multiply-add peak of double precision, in flops per second (a multiply-add counts two).
   virtual double measured_peak() = 0;

@@ -1,7 +1,7 @@
 #include "host/error.hpp"
-#include "host/map/orientation.hpp"
 #include "host/map/stretch.hpp"
 #include "host/mesh/subdivide.hpp"
+#include "host/orientation.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>

@@ -28,6 +28,7 @@ void add_expand(CLI::App& app, Common& common);
 void add_validate(CLI::App& app, Common& common);
 void add_inspect(CLI::App& app, Common& common);
 void add_devices(CLI::App& app, Common& common);
+void add_render(CLI::App& app, Common& common);
 void add_bench(CLI::App& app, Common& common);
 void add_transform(CLI::App& app, Common& common);
 void add_spectrum(CLI::App& app, Common& common);

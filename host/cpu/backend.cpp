@@ -4,6 +4,7 @@
 #include "host/cpu/moments.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/cpu/peak.hpp"
+#include "host/cpu/render.hpp"
 #include "host/cpu/sample.hpp"
 #include "host/cpu/sphere_transform.hpp"
 #include "host/parallel.hpp"
@@ -56,6 +57,7 @@ public:
   MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const override {
     return {cpu::sample_bytes(faces, grid), 0};
   }
+  Image render(const RenderScene& scene, Monitor& monitor) override { return cpu::render(scene, threads_, monitor); }
   double measured_peak() override { return cpu::peak(threads_); }
 
 private:

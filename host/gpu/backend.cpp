@@ -55,11 +55,15 @@ public:
 
   SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
                        Monitor& monitor, RunReport* report) override {
-    return gpu::translated([&] { return gpu::sample(gpu_, positions, faces, grid, monitor, report); });
+    return gpu::translated([&] { return gpu::sample(*gpu_, positions, faces, grid, monitor, report); });
   }
 
   MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const override {
-    return gpu::sample_memory(gpu_.facts(), faces, grid);
+    return gpu::sample_memory(gpu_->facts(), faces, grid);
+  }
+
+  Image render(const RenderScene& scene, Monitor& monitor) override {
+    return make_cpu_backend()->render(scene, monitor); // no kernel of its own so far
   }
 
   double measured_peak() override {
