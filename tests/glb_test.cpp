@@ -16,7 +16,7 @@ using namespace cowgpu;
 namespace {
 
 std::string written(const std::vector<GlbPart>& parts, const GlbAbout& about = {}) {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   AtomicFile file(folder / "x.glb");
   write_glb(parts, about, file);
   file.commit();

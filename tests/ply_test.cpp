@@ -18,7 +18,7 @@ using Catch::Contains;
 namespace {
 
 std::string written(const TriangleSurface& surface, const std::vector<std::string>& comments = {}) {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   AtomicFile file(folder / "x.ply");
   write_ply(surface, comments, file);
   file.commit();

@@ -17,9 +17,9 @@
 
 using namespace cowgpu;
 using Catch::Contains;
-using tests::ProgramRun;
-using tests::run_program;
-using tests::TemporaryFolder;
+using test::ProgramRun;
+using test::run_program;
+using test::TemporaryFolder;
 
 namespace {
 
