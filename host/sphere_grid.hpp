@@ -11,7 +11,7 @@ namespace cowgpu {
 enum class GridKind {
   gauss_legendre,        ///< "gl": zeros of P_n, n = lmax + 1 rings
   clenshaw_curtis,       ///< "cc": theta_i = pi i / (n - 1), both poles included, n = 2 lmax + 1 rings, at least 2
-  driscoll_healy,        ///< "dh": theta_i = pi i / n, north pole included, n = 2 lmax + 2 rings of 2 n points
+  driscoll_healy,        ///< "dh": theta_i = pi i / n, n = 2 lmax + 2 rings of 2 n points; the pole's ring has weight 0
   driscoll_healy_square, ///< "dh1": the same rings of n points
 };
 

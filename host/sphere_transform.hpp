@@ -33,8 +33,13 @@ struct TransformReport {
 ///   <a, b> = sum over l and m = -l ... l of conj(a_lm) b_lm  and  <f, g> = sum over the points of f g,
 /// analysis is A = S* W and its adjoint A* = W S.
 ///
-/// Keeps what it needs of its backend alive. Not for several threads at once. All throw Error(bad_argument) for spans of the wrong size, Error(interrupted), and
-/// on Vulkan Error(device_failed, device_lost). The same input on the same device gives the same bits.
+/// Complex fields are pairs of real ones (host/spectrum/complex_fields.hpp). Beside input and output a transform takes
+/// O(lmax^2 + points) of memory (Backend::sphere_transform_memory). Values that are not finite, or whose sums overflow, spread
+/// as IEEE arithmetic has it; nothing is thrown for them. `fields` is 0 to most_fields.
+///
+/// Keeps what it needs of its backend alive. Not for several threads at once. All throw Error(bad_argument) for spans of the
+/// wrong size, Error(interrupted), and on Vulkan Error(device_failed, device_lost). The same input on the same device gives
+/// the same bits.
 class SphereTransform {
 public:
   virtual ~SphereTransform() = default;

@@ -1,4 +1,5 @@
 #include "host/io/grid_file.hpp"
+#include "host/io/netcdf.hpp"
 
 #include "tests/support/fields.hpp"
 #include "tests/support/run_program.hpp"
@@ -367,4 +368,19 @@ TEST_CASE("names of fields that files cannot carry are replaced", "[grid-file]")
     CHECK(field_names(names, 2, "value") == std::vector<std::string>{"value_1", "value_2"});
   CHECK(field_names({}, 1, "value") == std::vector<std::string>{"value"});
   CHECK_THAT(fault_of([] { file_format("map.tif"); }), StartsWith("bad-argument: "));
+}
+
+TEST_CASE("values that stand for none are known without and with their attributes", "[grid-file]") {
+  NetcdfVariable v;
+  v.values = {1, 9.9692099683868690e+36, -9999, 50};
+  CHECK(present_value(v, 0) == 1);
+  CHECK(std::isnan(present_value(v, 1))); // netCDF's own fill value
+  CHECK(present_value(v, 2) == -9999);
+  v.attributes.push_back({"valid_range", false, "", -100});
+  CHECK(std::isnan(present_value(v, 2)));
+  v.attributes.push_back({"valid_max", false, "", 49});
+  CHECK(std::isnan(present_value(v, 3)));
+  v.attributes = {{"_FillValue", false, "", 50}};
+  CHECK(std::isnan(present_value(v, 3)));
+  CHECK(present_value(v, 1) == 9.9692099683868690e+36);
 }

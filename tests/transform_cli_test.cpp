@@ -126,6 +126,29 @@ TEST_CASE("a round trip on the device auto picks passes too", "[transform-cli][v
   CHECK_THAT(run.out, Contains("passed"));
 }
 
+TEST_CASE("what overflows is refused, not written, and no input is replaced", "[transform-cli]") {
+  const TemporaryFolder folder;
+  write_text(folder / "big.csv",
+             "# normalisation orthonormal\n# phase cs\n# lmax 1\nl,m,re,im\n0,0,1.7e308,0\n1,0,1.7e308,0\n"
+             "1,1,1.7e308,1.7e308\n");
+  for (const char* device : {"cpu", "auto"}) {
+    const ProgramRun run = run_program(
+        {"transform", "synthesise", folder / "big.csv", folder / "map.csv", "--grid", "gl", "--device", device});
+    INFO(run.out << run.err);
+    CHECK(run.exit_code == 3);
+    CHECK_THAT(run.err, Contains("overflow"));
+    CHECK_FALSE(std::filesystem::exists(folder / "map.csv"));
+  }
+  const ProgramRun power = run_program({"spectrum", folder / "big.csv"});
+  INFO(power.out << power.err);
+  CHECK(power.exit_code == 3);
+  write_random(folder / "c.nc", 4, 1);
+  const std::string before = read_text(folder / "c.nc");
+  const ProgramRun same = run_on_cpu({"transform", "synthesise", folder / "c.nc", folder / "c.nc", "--grid", "gl"});
+  CHECK(same.exit_code == 2);
+  CHECK(read_text(folder / "c.nc") == before);
+}
+
 TEST_CASE("usage errors of the transforms say what is allowed", "[transform-cli]") {
   const TemporaryFolder folder;
   write_random(folder / "c.nc", 4, 1);

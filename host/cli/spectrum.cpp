@@ -83,6 +83,12 @@ void run(const Options& options, const Common& common) {
     const std::string& name = file.names[std::size_t(f)];
     columns.push_back({!name.empty() ? name : a.fields == 1 ? "field" : fmt::format("field_{}", f + 1), power(a, f)});
   }
+  for (const Column& column : columns)
+    if (!std::isfinite(total(column.power)))
+      throw Error(Fault::file_format,
+                  fmt::format("{}: the squares of the coefficients of {} overflow double precision; "
+                              "scale the field down",
+                              options.input, shown(column.name)));
   const Column cross =
       options.cross ? Column{columns[0].name + " and " + columns[1].name, cross_power(a, 0, a, 1)} : Column{};
   if (options.json) {

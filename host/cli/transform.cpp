@@ -10,6 +10,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace cowgpu::cli {
@@ -133,6 +138,10 @@ std::unique_ptr<SphereTransform> prepare(const Options& options, const Common& c
 // The result's file, opened before the work; none for a dry run.
 std::unique_ptr<AtomicFile> open_output(const Options& options) {
   file_format(options.output);
+  std::error_code none;
+  if (std::filesystem::equivalent(options.input, options.output, none))
+    throw Error(Fault::bad_argument,
+                fmt::format("{} is input and output at once; give the output another name", options.output));
   return options.dry_run ? nullptr : std::make_unique<AtomicFile>(options.output);
 }
 
@@ -142,6 +151,12 @@ void finish(const Options& options, const Common& common, AtomicFile& file, Run&
   run.write_seconds = seconds_since(start);
   if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   write_report(options, common, run);
+}
+
+// Data near the end of double's range overflow in sums.
+[[noreturn]] void refuse_overflow(const Options& options, const Run& run) {
+  throw Error(Fault::file_format, fmt::format("{}: the {} of these values overflows double precision; scale them down",
+                                              options.input, run.what));
 }
 
 std::optional<GridKind> wanted_kind(const Options& options) {
@@ -174,6 +189,8 @@ void analyse(const Options& options, const Common& common) {
   ConsoleMonitor monitor(common.style());
   transform->analyse(in.fields(), in.values, out.coefficients.values, monitor, &run.report);
   monitor.clear();
+  for (const std::complex<double>& a : out.coefficients.values)
+    if (!std::isfinite(a.real()) || !std::isfinite(a.imag())) refuse_overflow(options, run);
   start = Clock::now();
   write_coefficients(out, file_format(options.output), *file);
   finish(options, common, *file, run, start);
@@ -223,6 +240,8 @@ void synthesise(const Options& options, const Common& common) {
   ConsoleMonitor monitor(common.style());
   transform->synthesise(fields, in.coefficients.values, out.values, monitor, &run.report);
   monitor.clear();
+  if (!std::all_of(out.values.begin(), out.values.end(), [](double v) { return std::isfinite(v); }))
+    refuse_overflow(options, run);
   start = Clock::now();
   write_grid(out, file_format(options.output), *file);
   finish(options, common, *file, run, start);

@@ -179,7 +179,7 @@ CoefficientFile read_netcdf_coefficients(const std::filesystem::path& path) {
     real.convention = convention;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) {
-        const double value = v.values[i * n + j];
+        const double value = present_value(v, i * n + j);
         if (!std::isfinite(value))
           throw Error(Fault::file_syntax,
                       fmt::format("{}, row {}, column {}: {} is no finite number", place, i, j, value));

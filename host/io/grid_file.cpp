@@ -208,14 +208,6 @@ const NetcdfVariable& coordinate(const NetcdfFile& netcdf, const char* key) {
   return *v;
 }
 
-// A value that stands for none becomes NaN, which is refused later with its place.
-double present(const NetcdfVariable& v, std::size_t at) {
-  for (const char* key : {"_FillValue", "missing_value"})
-    if (const NetcdfAttribute* fill = attribute(v.attributes, key); fill && v.values[at] == fill->number)
-      return std::nan("");
-  return v.values[at];
-}
-
 GridFile read_netcdf_grid(const std::filesystem::path& path, std::optional<GridKind> kind) {
   const NetcdfFile netcdf = read_netcdf(path);
   if (netcdf.variable("degree") && netcdf.variable("order"))
@@ -244,7 +236,9 @@ GridFile read_netcdf_grid(const std::filesystem::path& path, std::optional<GridK
   raw.lats = lat.values;
   raw.lons = lon.values;
   const std::size_t length = lon.values.size();
-  raw.value = [&, length](std::size_t f, std::size_t i, std::size_t j) { return present(*fields[f], i * length + j); };
+  raw.value = [&, length](std::size_t f, std::size_t i, std::size_t j) {
+    return present_value(*fields[f], i * length + j);
+  };
   raw.lat_place = [&](std::size_t i) { return fmt::format("{}: variable lat, value {}", netcdf.name, i); };
   raw.lon_place = [&](std::size_t j) { return fmt::format("{}: variable lon, value {}", netcdf.name, j); };
   raw.value_place = [&](std::size_t f, std::size_t i, std::size_t j) {

@@ -44,6 +44,10 @@ struct NetcdfFile {
   const NetcdfVariable* variable(std::string_view variable_name) const; ///< null where there is none
 };
 
+/// Value `at` of a variable, NaN where it stands for none: what _FillValue or missing_value says, netCDF's own fill value of
+/// floating-point variables without _FillValue, or outside valid_min, valid_max and the lower end of valid_range.
+double present_value(const NetcdfVariable& variable, std::size_t at);
+
 /// The attribute of that name, or null.
 const NetcdfAttribute* attribute(const std::vector<NetcdfAttribute>& list, std::string_view name);
 

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <limits>
@@ -288,6 +289,22 @@ const NetcdfAttribute* attribute(const std::vector<NetcdfAttribute>& list, std::
   for (const NetcdfAttribute& a : list)
     if (a.name == name) return &a;
   return nullptr;
+}
+
+double present_value(const NetcdfVariable& variable, std::size_t at) {
+  constexpr double default_fill = 9.9692099683868690e+36; // NC_FILL_DOUBLE and NC_FILL_FLOAT
+  const double value = variable.values[at];
+  const auto number = [&](const char* key) {
+    const NetcdfAttribute* a = attribute(variable.attributes, key);
+    return a && !a->is_text ? a : nullptr;
+  };
+  bool missing = !number("_FillValue") && value == default_fill;
+  for (const char* key : {"_FillValue", "missing_value"})
+    if (const NetcdfAttribute* fill = number(key)) missing = missing || value == fill->number;
+  for (const char* key : {"valid_min", "valid_range"})
+    if (const NetcdfAttribute* low = number(key)) missing = missing || value < low->number;
+  if (const NetcdfAttribute* high = number("valid_max")) missing = missing || value > high->number;
+  return missing ? std::nan("") : value;
 }
 
 const NetcdfVariable* NetcdfFile::variable(std::string_view variable_name) const {
