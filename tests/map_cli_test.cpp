@@ -3,6 +3,7 @@
 #include "host/io/mesh_source.hpp"
 #include "host/io/ply.hpp"
 #include "host/map/harmonic.hpp"
+#include "host/map/quality.hpp"
 #include "host/map/stretch.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/run_program.hpp"

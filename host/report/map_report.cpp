@@ -82,11 +82,11 @@ void write_screen(const MapReport& report, const Sink& sink) {
   row("triangles of no area", count_text(mesh, q.flat));
   row("area on sphere / body", quantiles_text(area_parts, q.log_area_ratio, true) + " of the surface");
   row("shear", quantiles_text(shear_parts, q.shear, false) + " of the surface");
-  row("smallest triangle", fmt::format("{:.3e} sr, {:.2e} of a square cell, {}", q.smallest_area,
+  row("smallest triangle", fmt::format("{:.3e} sr, {:.3g} of a square cell, {}", q.smallest_area,
                                        q.smallest_area / (q.cell * q.cell), where(mesh, q.smallest_area_face)));
-  row("smallest height", fmt::format("{:.3e} rad, {:.2e} of a cell, {}", q.smallest_height, q.smallest_height / q.cell,
+  row("smallest height", fmt::format("{:.3e} rad, {:.3g} of a cell, {}", q.smallest_height, q.smallest_height / q.cell,
                                      where(mesh, q.smallest_height_face)));
-  row("seen by the grid", fmt::format("{} of {} triangles, {:.2f} % of the surface", q.triangles - q.unseen,
+  row("seen by the grid", fmt::format("{} of {} triangles, {:.6g} % of the surface", q.triangles - q.unseen,
                                       q.triangles, 100 * (1 - q.unseen_area)));
   sink("in words:\n");
   for (const std::string& sentence : q.sentences) sink("  " + sentence + ".\n");
