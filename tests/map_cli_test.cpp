@@ -5,6 +5,7 @@
 #include "host/map/harmonic.hpp"
 #include "host/map/quality.hpp"
 #include "host/map/stretch.hpp"
+#include "host/report/map_report.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -61,7 +62,7 @@ TEST_CASE("every method maps a sphere one-to-one and says so", "[map-cli]") {
     const ProgramRun run = run_program({"map", "builtin:sphere@2", "--method", method, "--lmax", "4"});
     INFO(run.err);
     REQUIRE(run.exit_code == 0);
-    CHECK_THAT(run.out, StartsWith("mesh builtin:sphere@2, sha256 "));
+    CHECK_THAT(run.out, StartsWith("mesh builtin:sphere:1@2, sha256 "));
     CHECK_THAT(run.out, Contains(fmt::format("map: {}, made in", method)));
     CHECK_THAT(run.out, Contains("flipped triangles        0\n") && Contains("the map is one-to-one"));
     CHECK_THAT(run.out, Contains("grid for lmax 4, whose cells are 22.5 degrees"));
@@ -210,6 +211,28 @@ TEST_CASE("the JSON of a map holds the findings of judge()", "[map-cli]") {
   CHECK(quality["unseen"]["area"] == want.unseen_area);
   CHECK(quality["unseen"]["parts"].size() == want.parts.size());
   CHECK(quality["sentences"] == nlohmann::json(want.sentences));
+}
+
+TEST_CASE("infinite shear is null in the JSON of a map, and flat triangles are listed", "[map-cli]") {
+  const auto surface = manifold(icosphere(1));
+  SphereMap map{"file", surface.vertices(), {}};
+  for (Vec3& p : map.positions) p.normalize();
+  const Face& face = surface.faces()[9];
+  map.positions[face[0]] = map.positions[face[1]];
+  MapReport report;
+  report.mesh = &surface.closed().mesh();
+  report.map = &map;
+  report.quality = judge(surface, map, 4);
+  std::string text, screen;
+  write_json(report, [&](std::string_view part) { text += part; });
+  write_screen(report, [&](std::string_view part) { screen += part; });
+  const auto quality = nlohmann::json::parse(text)["quality"];
+  CHECK(quality["shear"]["values"].back().is_null());
+  CHECK(quality["shear"]["values"].front().is_number());
+  CHECK(quality["flat"]["count"] == 2); // both triangles at that edge
+  CHECK(quality["flat"]["faces"] == nlohmann::json(report.quality.flat));
+  CHECK_THAT(screen, Contains(fmt::format("triangles of no area     2: face {}; face {}\n", report.quality.flat[0],
+                                          report.quality.flat[1])));
 }
 
 TEST_CASE("a file is read as a map only of the mesh it belongs to", "[map-cli]") {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <span>
 
@@ -31,8 +32,9 @@ std::string count_text(const RawMesh& mesh, const std::vector<std::uint32_t>& fa
 
 std::string quantiles_text(std::span<const double> parts, std::span<const double> values, bool powers_of_ten) {
   std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const std::string value = powers_of_ten ? fmt::format("10^{:.2f}", values[i]) : fmt::format("{:.4g}", values[i]);
+  for (std::size_t i = 0; i < parts.size(); ++i) { // + 0.0: no minus before zero
+    const std::string value = powers_of_ten ? fmt::format("10^{:.2f}", std::round(100 * values[i]) / 100 + 0.0)
+                                            : fmt::format("{:.4g}", values[i]);
     text += fmt::format("{}{} ({} %)", i == 0 ? "" : ", ", value, 100 * parts[i]);
   }
   return text;
