@@ -108,4 +108,20 @@ with tempfile.TemporaryDirectory() as folder:
     refuses(transform, here, "a direction that is none")
     first["fields"][0]["power"][0] = -1
     refuses(spectrum, first, "a negative power")
-print("11 documents and 2 files passed")
+
+sphere_map = load_schema("map")
+for arguments in (
+    ["builtin:sphere@2"],
+    ["builtin:cow@1", "--method", "harmonic", "--pole", "0,1,0", "--lmax", "8"],
+    ["builtin:cow@1", "--recipe", "paper"],
+    ["builtin:sphere@2", "--method", "smooth", "--lmax", "3"],
+):
+    judged = output_of("map", "--json", *arguments)
+    jsonschema.validate(judged, sphere_map)
+    quality = judged["quality"]
+    assert quality["seen"] + quality["unseen"]["count"] == quality["triangles"] == judged["mesh"]["faces"]
+    assert quality["flipped"]["count"] == len(quality["flipped"]["faces"])
+    assert sum(part["triangles"] for part in quality["unseen"]["parts"]) == quality["unseen"]["count"]
+judged["method"] = "guess"
+refuses(sphere_map, judged, "a method that is none")
+print("15 documents and 2 files passed")

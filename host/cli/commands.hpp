@@ -3,11 +3,14 @@
 
 #include "host/backend.hpp"
 #include "host/cli/console.hpp"
+#include "host/types.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cowgpu::cli {
@@ -32,6 +35,7 @@ void add_render(CLI::App& app, Common& common);
 void add_bench(CLI::App& app, Common& common);
 void add_transform(CLI::App& app, Common& common);
 void add_spectrum(CLI::App& app, Common& common);
+void add_map(CLI::App& app, Common& common);
 
 /// Adds `roundtrip` to the command `transform`.
 void add_roundtrip(CLI::App& transform, Common& common);
@@ -49,6 +53,9 @@ void add_degree_option(CLI::App& command, int& lmax, const char* what);
 
 /// Throws Error(too_large) with `advice` where this machine has not so much memory.
 void check_memory(const MemoryNeed& need, const Backend& backend, const char* advice);
+
+/// "X,Y,Z", three finite numbers; nothing if the text is something else.
+std::optional<Vec3> parse_point(std::string_view text);
 
 /// The help text of a MESH argument.
 std::string mesh_help();

@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
+
 namespace cowgpu::cli {
 
 void add_common_options(CLI::App& command, Common& common) {
@@ -53,6 +56,19 @@ void check_memory(const MemoryNeed& need, const Backend& backend, const char* ad
   if (cpu.memory && host > cpu.memory)
     throw Error(Fault::too_large, fmt::format("this needs {} MiB of memory and the machine has {} MiB; {}", host >> 20,
                                               cpu.memory >> 20, advice));
+}
+
+std::optional<Vec3> parse_point(std::string_view text) {
+  Vec3 point;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int c = 0; c < 3; ++c) {
+    const auto [next, error] = std::from_chars(at, end, point[c]);
+    const bool comma = next < end && *next == ',';
+    if (error != std::errc() || !std::isfinite(point[c]) || (c < 2 ? !comma : next != end)) return std::nullopt;
+    at = next + 1;
+  }
+  return point;
 }
 
 std::string mesh_help() {

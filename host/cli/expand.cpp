@@ -10,8 +10,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 namespace cowgpu::cli {
 namespace {
 
@@ -47,18 +45,9 @@ private:
 OriginChoice parse_origin(const std::string& text) {
   if (text == "com") return {};
   if (text == "mesh") return {"mesh", Vec3::Zero()};
-  Vec3 point;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (int c = 0; c < 3; ++c) {
-    const auto [next, error] = std::from_chars(at, end, point[c]);
-    const bool comma = next < end && *next == ',';
-    if (error != std::errc() || !std::isfinite(point[c]) || (c < 2 ? !comma : next != end))
-      throw Error(Fault::bad_argument,
-                  fmt::format("--origin {}: it must be com, mesh or three numbers X,Y,Z in mesh coordinates", text));
-    at = next + 1;
-  }
-  return {"given", point};
+  if (const auto point = parse_point(text)) return {"given", *point};
+  throw Error(Fault::bad_argument,
+              fmt::format("--origin {}: it must be com, mesh or three numbers X,Y,Z in mesh coordinates", text));
 }
 
 Verify parse_verify(const std::string& text) {

@@ -1,0 +1,207 @@
+#include "host/cli/commands.hpp"
+
+#include "host/clock.hpp"
+#include "host/error.hpp"
+#include "host/io/map_file.hpp"
+#include "host/io/mesh_source.hpp"
+#include "host/map/harmonic.hpp"
+#include "host/map/smooth.hpp"
+#include "host/map/stretch.hpp"
+#include "host/mesh/half_edges.hpp"
+#include "host/report/json_parts.hpp"
+#include "host/report/map_report.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace cowgpu::cli {
+namespace {
+
+struct Options {
+  std::string mesh = "builtin:cow";
+  std::string method; // empty: harmonic for a recipe, else stretch
+  std::string weights = "cotangent", pole = "back", recipe;
+  double disk_scale = 0;
+  bool centre = false, polish = false;
+  unsigned sweeps = StretchOptions{}.sweeps;
+  double lambda = 0;
+  bool converge = false;
+  int lmax = 512;
+  std::string output;
+  bool json = false;
+};
+
+// An option and the method it belongs to.
+struct Belonging {
+  const CLI::Option* option;
+  const char* method;
+};
+
+void refuse_strangers(const std::vector<Belonging>& belongings, const std::string& method) {
+  for (const auto& [option, owner] : belongings)
+    if (option->count() > 0 && method != owner)
+      throw Error(Fault::bad_argument,
+                  fmt::format("{} belongs to --method {}; the method is {}", option->get_name(), owner, method));
+}
+
+Pole parse_pole(const std::string& text) {
+  Pole pole;
+  if (text == "back") return pole;
+  const char* const end = text.data() + text.size();
+  if (const auto read = std::from_chars(text.data(), end, pole.vertex); read.ec == std::errc() && read.ptr == end) {
+    pole.rule = Pole::Rule::vertex;
+    return pole;
+  }
+  const auto point = parse_point(text);
+  if (!point)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--pole {}: it must be back, the number of a vertex (from 0) or three numbers X,Y,Z in mesh "
+                    "coordinates",
+                    text));
+  pole.rule = Pole::Rule::point;
+  pole.point = *point;
+  return pole;
+}
+
+HarmonicOptions harmonic_options(const Options& options) {
+  if (options.recipe == "paper") return HarmonicOptions::paper_recipe();
+  HarmonicOptions harmonic;
+  harmonic.weights = options.weights == "tutte"        ? EdgeWeights::tutte
+                     : options.weights == "mean-value" ? EdgeWeights::mean_value
+                                                       : EdgeWeights::cotangent;
+  harmonic.pole = parse_pole(options.pole);
+  harmonic.disk_scale = options.disk_scale;
+  harmonic.centre = options.centre;
+  harmonic.polish = options.polish;
+  return harmonic;
+}
+
+SphereMap make_map(const Options& options, const ManifoldSurface& surface, Monitor& monitor) {
+  if (options.method == "harmonic") return harmonic_map(surface, harmonic_options(options));
+  if (options.method == "smooth") return smooth_map(surface);
+  StretchOptions stretch;
+  stretch.sweeps = options.sweeps;
+  stretch.lambda = options.lambda;
+  stretch.converge = options.converge;
+  return stretch_map(surface, stretch, monitor);
+}
+
+void run(const Options& options, const Common& common) {
+  if (options.method == "harmonic") harmonic_options(options); // words that mean nothing, before files are touched
+  const MapFormat format = options.output.empty() ? MapFormat::ply : map_format(options.output);
+  std::unique_ptr<AtomicFile> file; // before long work: what cannot be written should fail now
+  if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
+
+  const ManifoldSurface surface = ManifoldSurface::from(ClosedSurface::from(load_mesh(options.mesh)));
+  require_sphere(surface);
+  // No Vulkan kernel makes maps: a device is opened only if it is asked for.
+  if (common.device != "auto" && common.device != "cpu") {
+    const auto backend = open_backend(common, nullptr);
+    if (!common.quiet) say(fmt::format("cowgpu: maps are made on the CPU; {} is not used\n", backend->facts().name));
+  }
+
+  ConsoleMonitor monitor(common.style());
+  MapReport report;
+  report.command = common.command;
+  report.created = utc_now();
+  report.mesh = &surface.closed().mesh();
+  auto start = Clock::now();
+  const SphereMap map = make_map(options, surface, monitor);
+  report.map = &map;
+  report.map_seconds = seconds_since(start);
+  monitor.clear();
+  check_stop(monitor);
+  start = Clock::now();
+  report.quality = judge(surface, map, options.lmax);
+  report.judge_seconds = seconds_since(start);
+  if (file) {
+    write_map(surface, map, format, *file);
+    check_stop(monitor);
+    file->commit();
+    report.output = options.output;
+    if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
+  }
+  if (options.json)
+    write_json(report, write_stdout);
+  else
+    write_screen(report, write_stdout);
+}
+
+} // namespace
+
+void add_map(CLI::App& app, Common& common) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("map", "A map of a mesh of genus 0 to the sphere, and what it is worth");
+  command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  command
+      ->add_option(
+          "--method", options->method,
+          "stretch (the default: every part of the body keeps room on the sphere, and no triangle is flipped), "
+          "harmonic or smooth (both conformal: limbs shrink to points)")
+      ->check(CLI::IsMember({"harmonic", "stretch", "smooth"}))
+      ->type_name("NAME");
+  CLI::Option* weights = command->add_option("--weights", options->weights, "harmonic: what an edge weighs")
+                             ->check(CLI::IsMember({"cotangent", "mean-value", "tutte"}))
+                             ->capture_default_str();
+  CLI::Option* pole = command
+                          ->add_option("--pole", options->pole,
+                                       "harmonic: the vertex taken out, by its number (from 0), as the nearest to "
+                                       "X,Y,Z, or back (the middle of the top)")
+                          ->type_name("VERTEX|X,Y,Z|back")
+                          ->capture_default_str();
+  CLI::Option* scale =
+      command
+          ->add_option(
+              "--disk-scale", options->disk_scale,
+              "harmonic: the unit disk times S goes round the sphere (default: what brings half of the area to "
+              "each hemisphere)")
+          ->check(CLI::PositiveNumber)
+          ->type_name("S");
+  CLI::Option* centre =
+      command->add_flag("--centre", options->centre, "harmonic: move the mean direction by area to the centre");
+  CLI::Option* polish = command->add_flag("--polish", options->polish,
+                                          "harmonic: go on until harmonic at the pole too (implies --centre)");
+  CLI::Option* recipe = command
+                            ->add_option("--recipe", options->recipe,
+                                         "harmonic: paper (the settings behind the published table of the cow)")
+                            ->check(CLI::IsMember({"paper"}))
+                            ->type_name("NAME");
+  scale->excludes(centre)->excludes(polish); // centring undoes any scale
+  for (CLI::Option* own : {weights, pole, scale, centre, polish}) recipe->excludes(own);
+  CLI::Option* sweeps = command->add_option("--sweeps", options->sweeps, "stretch: relaxations of all vertices")
+                            ->check(CLI::Range(0U, 1000000U))
+                            ->type_name("N")
+                            ->capture_default_str();
+  CLI::Option* lambda = command
+                            ->add_option("--lambda", options->lambda,
+                                         "stretch: weight of the stretch from the body to the sphere; 0.1 makes the "
+                                         "shear less extreme")
+                            ->check(CLI::NonNegativeNumber)
+                            ->type_name("L")
+                            ->capture_default_str();
+  CLI::Option* converge =
+      command->add_flag("--converge", options->converge, "stretch: go on to a minimum by Newton's method");
+  command->add_option("--lmax", options->lmax, "Degree of the grid that the map is judged against")
+      ->check(CLI::Range(1, largest_grid_degree))
+      ->type_name("L")
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", options->output,
+                   "The positions on the sphere in the mesh's order: FILE.ply (doubles) or FILE.glb (for viewers)")
+      ->type_name("FILE");
+  command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.map.v1.json)");
+  add_common_options(*command, common);
+  command->footer("Examples: cowgpu map benchmark -o cow.ply; cowgpu map benchmark --recipe paper --lmax 256");
+  const std::vector<Belonging> belongings = {{weights, "harmonic"}, {pole, "harmonic"},   {scale, "harmonic"},
+                                             {centre, "harmonic"},  {polish, "harmonic"}, {recipe, "harmonic"},
+                                             {sweeps, "stretch"},   {lambda, "stretch"},  {converge, "stretch"}};
+  command->callback([options, &common, belongings] {
+    if (options->method.empty()) options->method = options->recipe.empty() ? "stretch" : "harmonic";
+    refuse_strangers(belongings, options->method);
+    run(*options, common);
+  });
+}
+
+} // namespace cowgpu::cli

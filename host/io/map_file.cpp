@@ -1,0 +1,95 @@
+#include "host/io/map_file.hpp"
+
+#include "host/error.hpp"
+#include "host/io/file.hpp"
+#include "host/io/glb.hpp"
+#include "host/io/ply.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace cowgpu {
+namespace {
+
+constexpr double unit_tolerance = 1e-9;
+
+std::string face_text(const Face& f) {
+  return fmt::format("({}, {}, {})", f[0], f[1], f[2]);
+}
+
+void require_faces(const PlyMesh& file, const std::vector<Face>& faces, const std::string& name) {
+  const auto advice = "take the file that `cowgpu map` wrote for this very mesh";
+  if (file.faces.size() != faces.size())
+    throw Error(Fault::bad_argument, fmt::format("{} has {} faces and the mesh {}: it is no map of this mesh; {}", name,
+                                                 file.faces.size(), faces.size(), advice));
+  const auto [there, here] = std::mismatch(file.faces.begin(), file.faces.end(), faces.begin());
+  if (there != file.faces.end())
+    throw Error(Fault::bad_argument,
+                fmt::format("face {} of {} is {} and that of the mesh {}: it is no map of this mesh; {}",
+                            here - faces.begin(), name, face_text(*there), face_text(*here), advice));
+}
+
+} // namespace
+
+MapFormat map_format(const std::filesystem::path& path) {
+  if (path.extension() == ".ply") return MapFormat::ply;
+  if (path.extension() == ".glb") return MapFormat::glb;
+  throw Error(Fault::bad_argument, fmt::format("{}: a map's name must end in .ply or .glb", path.string()));
+}
+
+void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat format, AtomicFile& file) {
+  const RawMesh& mesh = surface.closed().mesh();
+  TriangleSurface sphere;
+  sphere.name = mesh.name;
+  sphere.vertices = map.positions;
+  sphere.faces = mesh.faces;
+  if (format == MapFormat::ply) {
+    std::vector<std::string> comments = {"map to the unit sphere: " + map.method, "mesh sha256 " + mesh.sha256};
+    comments.insert(comments.end(), map.notes.begin(), map.notes.end());
+    write_ply(sphere, comments, file);
+    return;
+  }
+  GlbAbout about;
+  about.length_unit = "radius of the sphere";
+  about.facts = {{"map", map.method}, {"mesh_sha256", mesh.sha256}};
+  const std::array part = {GlbPart{&sphere}};
+  write_glb(part, about, file);
+}
+
+SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface) {
+  const std::string name = path.string();
+  PlyMesh file = read_ply_positions(read_file(path), name);
+  const std::size_t vertices = surface.vertices().size();
+  if (file.vertices.size() != vertices)
+    throw Error(Fault::bad_argument, fmt::format("{} has {} vertices and the mesh {}: it is no map of this mesh", name,
+                                                 file.vertices.size(), vertices));
+  require_faces(file, surface.faces(), name);
+
+  std::vector<bool> used(vertices);
+  for (const Face& f : surface.faces())
+    for (const std::uint32_t v : f) used[v] = true;
+  SphereMap map;
+  map.method = "file";
+  for (std::size_t v = 0; v < vertices; ++v) {
+    if (!used[v]) {
+      file.vertices[v] = Vec3::Zero();
+      continue;
+    }
+    const double length = file.vertices[v].stableNorm();
+    if (!(std::abs(length - 1) <= unit_tolerance))
+      throw Error(
+          Fault::bad_argument,
+          fmt::format("vertex {} of {} has length {:.12g}: a map's vertices lie on the unit sphere to {:.0e}, as "
+                      "doubles hold them and floats do not",
+                      v, name, length, unit_tolerance));
+  }
+  map.positions = std::move(file.vertices);
+  map.notes.push_back("positions were read from " + name);
+  return map;
+}
+
+} // namespace cowgpu

@@ -1,0 +1,118 @@
+#include "host/report/map_report.hpp"
+
+#include "host/mesh/topology.hpp"
+#include "host/report/json_parts.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace cowgpu {
+namespace {
+
+using nlohmann::ordered_json;
+
+// What the members of MapQuality are quantiles at.
+constexpr std::array area_parts = {0.0, 0.05, 0.25, 0.5, 0.95, 1.0};
+constexpr std::array shear_parts = {0.5, 0.95, 0.99, 1.0};
+
+constexpr std::size_t listed_faces = 5;
+
+std::string count_text(const RawMesh& mesh, const std::vector<std::uint32_t>& faces) {
+  std::string text = fmt::format("{}", faces.size());
+  for (std::size_t i = 0; i < std::min(faces.size(), listed_faces); ++i)
+    text += (i == 0 ? ": " : "; ") + where(mesh, faces[i]);
+  return faces.size() > listed_faces ? text + "; ..." : text;
+}
+
+std::string quantiles_text(std::span<const double> parts, std::span<const double> values, bool powers_of_ten) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) { // + 0.0: no minus before zero
+    const std::string value = powers_of_ten ? fmt::format("10^{:.2f}", std::round(100 * values[i]) / 100 + 0.0)
+                                            : fmt::format("{:.4g}", values[i]);
+    text += fmt::format("{}{} ({} %)", i == 0 ? "" : ", ", value, 100 * parts[i]);
+  }
+  return text;
+}
+
+ordered_json quantiles_json(std::span<const double> parts, std::span<const double> values) {
+  return {{"parts", parts}, {"values", values}}; // the library writes infinity as null
+}
+
+ordered_json quality_json(const MapQuality& q) {
+  ordered_json parts = ordered_json::array();
+  for (const UnseenPart& part : q.parts)
+    parts.push_back({{"triangles", part.triangles},
+                     {"area", part.area},
+                     {"middle", {part.middle.x(), part.middle.y(), part.middle.z()}}});
+  return {{"lmax", q.lmax},
+          {"cell", q.cell},
+          {"triangles", q.triangles},
+          {"degree", q.degree},
+          {"inside_out", q.inside_out},
+          {"flipped", {{"count", q.flipped.size()}, {"area", q.flipped_area}, {"faces", q.flipped}}},
+          {"flat", {{"count", q.flat.size()}, {"faces", q.flat}}},
+          {"log_area_ratio", quantiles_json(area_parts, q.log_area_ratio)},
+          {"shear", quantiles_json(shear_parts, q.shear)},
+          {"smallest_area", {{"steradians", q.smallest_area}, {"face", q.smallest_area_face}}},
+          {"smallest_height",
+           {{"radians", q.smallest_height}, {"cells", q.smallest_height / q.cell}, {"face", q.smallest_height_face}}},
+          {"seen", q.triangles - q.unseen},
+          {"unseen", {{"count", q.unseen}, {"area", q.unseen_area}, {"parts", parts}}},
+          {"sentences", q.sentences}};
+}
+
+} // namespace
+
+void write_screen(const MapReport& report, const Sink& sink) {
+  const auto row = [&](const char* what, const std::string& value) { sink(fmt::format("  {:<24} {}\n", what, value)); };
+  const MapQuality& q = report.quality;
+  const RawMesh& mesh = *report.mesh;
+  sink(mesh_line(mesh) + "\n");
+  for (const std::string& note : mesh.notes) sink("note: " + note + "\n");
+  sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", report.map->method, report.map_seconds,
+                   report.judge_seconds));
+  for (const std::string& note : report.map->notes) sink("note: " + note + "\n");
+  sink(fmt::format("judged against a grid for lmax {}, whose cells are {:.3g} degrees ({:.3e} rad) high:\n", q.lmax,
+                   q.cell * 180 / std::numbers::pi, q.cell));
+  row("flipped triangles", count_text(mesh, q.flipped));
+  row("triangles of no area", count_text(mesh, q.flat));
+  row("area on sphere / body", quantiles_text(area_parts, q.log_area_ratio, true) + " of the surface");
+  row("shear", quantiles_text(shear_parts, q.shear, false) + " of the surface");
+  row("smallest triangle", fmt::format("{:.3e} sr, {:.3g} of a square cell, {}", q.smallest_area,
+                                       q.smallest_area / (q.cell * q.cell), where(mesh, q.smallest_area_face)));
+  row("smallest height", fmt::format("{:.3e} rad, {:.3g} of a cell, {}", q.smallest_height, q.smallest_height / q.cell,
+                                     where(mesh, q.smallest_height_face)));
+  row("seen by the grid", fmt::format("{} of {} triangles, {:.6g} % of the surface", q.triangles - q.unseen,
+                                      q.triangles, 100 * (1 - q.unseen_area)));
+  sink("in words:\n");
+  for (const std::string& sentence : q.sentences) sink("  " + sentence + ".\n");
+}
+
+void write_json(const MapReport& report, const Sink& sink) {
+  const RawMesh& mesh = *report.mesh;
+  std::vector<std::string> notes = mesh.notes;
+  notes.insert(notes.end(), report.map->notes.begin(), report.map->notes.end());
+  const ordered_json all = {{"schema", "cowgpu.map.v1"},
+                            {"program", program_json()},
+                            {"command", report.command},
+                            {"created", report.created},
+                            {"mesh",
+                             {{"name", mesh.name},
+                              {"sha256", mesh.sha256},
+                              {"vertices", mesh.vertices.size()},
+                              {"faces", mesh.faces.size()}}},
+                            {"method", report.map->method},
+                            {"notes", notes},
+                            {"output", report.output.empty() ? ordered_json() : ordered_json(report.output)},
+                            {"quality", quality_json(report.quality)},
+                            {"timings", {{"map", report.map_seconds}, {"judge", report.judge_seconds}}}};
+  sink(json_text(all) + "\n");
+}
+
+} // namespace cowgpu

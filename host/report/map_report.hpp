@@ -1,0 +1,29 @@
+// A map to the sphere and what it is worth, ready to be shown.
+#pragma once
+
+#include "host/map/quality.hpp"
+#include "host/report/result.hpp"
+
+#include <string>
+#include <vector>
+
+namespace cowgpu {
+
+/// Result of `map`.
+struct MapReport {
+  std::vector<std::string> command; ///< as typed
+  std::string created;              ///< UTC, ISO 8601
+  const RawMesh* mesh = nullptr;
+  const SphereMap* map = nullptr;
+  MapQuality quality;
+  std::string output;                        ///< the file written, or empty
+  double map_seconds = 0, judge_seconds = 0; ///< wall time
+};
+
+/// For people: the mesh, the method and its notes, a table of figures, the same in sentences.
+void write_screen(const MapReport& report, const Sink& sink);
+
+/// As JSON after data/schemas/cowgpu.map.v1.json; infinite numbers are null.
+void write_json(const MapReport& report, const Sink& sink);
+
+} // namespace cowgpu
