@@ -59,6 +59,22 @@ for arguments in (
     want = result["mesh"]["volume"] * mass["density"] / (4 * 3.141592653589793) ** 0.5
     assert abs(q00 - want) < 1e-14 * abs(want), "Q_00 is the mass over sqrt(4 pi)"
 
+for of, want in (("all", ["mass", "harmonic", "stretch", "smooth"]), ("stretch,harmonic", ["harmonic", "stretch"])):
+    both = expand("builtin:cow@1", "--of", of, "--lmax", "9", "--device", "cpu", "--aliasing", "--json")
+    jsonschema.validate(both, schema)
+    assert list(both["expansions"]) == want
+    for name in want[-2:]:
+        surface = both["expansions"][name]
+        assert [row[:2] for row in surface["coefficients"]] == [[l, m] for l in range(10) for m in range(l + 1)]
+        assert surface["coefficients"][0][4:8] == [0, 0, 0, 0], "the means of the angles are removed"
+        assert len(surface["aliasing"]) == 10 and surface["dphi"] == "signed" and surface["map"]["method"] == name
+paper = expand("builtin:cow@1", "--of", "harmonic", "--recipe", "paper", "--lmax", "3", "--device", "cpu", "--json")
+jsonschema.validate(paper, schema)
+assert (paper["expansions"]["harmonic"]["recipe"], paper["expansions"]["harmonic"]["dphi"]) == ("paper", "absolute")
+assert paper["accuracy"]["passed"] is None and paper["expansions"]["harmonic"]["origin"] == [0, 0, 0]
+paper["expansions"]["harmonic"]["dphi"] = "wavy"
+refuses(schema, paper, "an angle of no kind")
+
 result["mesh"]["sha256"] = "milk"
 refuses(schema, result, "a hash that is none")
 
@@ -124,4 +140,4 @@ for arguments in (
     assert sum(part["triangles"] for part in quality["unseen"]["parts"]) == quality["unseen"]["count"]
 judged["method"] = "guess"
 refuses(sphere_map, judged, "a method that is none")
-print("15 documents and 2 files passed")
+print("18 documents and 2 files passed")

@@ -1,4 +1,5 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/expand_surfaces.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
@@ -16,6 +17,8 @@ namespace {
 struct Options {
   std::string mesh = "builtin:cow";
   std::string of = "mass";
+  std::string recipe = "default";
+  bool aliasing = false;
   int lmax = 8;
   std::string origin = "com";
   double density = 1;
@@ -62,57 +65,90 @@ void check_outputs(const Options& options) {
   for (const std::string& path : options.outputs)
     if (!ends_with(path, ".json") && !ends_with(path, ".csv"))
       throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .json or .csv", path));
-  if (options.of != "mass" && options.of != "all")
-    throw Error(Fault::bad_argument, fmt::format("--of {}: there is no such expansion; there is: mass", options.of));
+}
+
+ExpansionChoice chosen(const Options& options) {
+  const ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.lmax);
+  for (const std::string& path : options.outputs)
+    if (ends_with(path, ".csv") && !choice.mass)
+      throw Error(
+          Fault::bad_argument,
+          fmt::format("-o {}: a CSV holds the mass multipoles, and --of {} has none; write a .json", path, options.of));
+  return choice;
+}
+
+std::uint64_t all_json_bytes(const ExpansionChoice& choice) {
+  return (choice.mass ? json_bytes(choice.lmax) : 0) + choice.maps.size() * surface_json_bytes(choice.lmax);
 }
 
 // What the run needs at most: the result, and either the computation or its check.
-MemoryNeed memory_need(const Options& options, const MomentProblem& problem, const Backend& backend) {
-  MemoryNeed need = backend.moments_memory(problem);
-  need.host = std::max(need.host, 16 * Coefficients::count(options.lmax) +
-                                      verify_bytes(problem, backend, parse_verify(options.verify)));
-  return need;
+MemoryNeed memory_need(const Options& options, const ExpansionChoice& choice, const MomentProblem& problem,
+                       const Backend& backend) {
+  const MemoryNeed surfaces = surfaces_memory(choice, problem.faces.size(), backend);
+  if (!choice.mass) return surfaces;
+  const MemoryNeed need = backend.moments_memory(problem);
+  const std::uint64_t result = 16 * Coefficients::count(options.lmax);
+  const std::uint64_t check = result + verify_bytes(problem, backend, parse_verify(options.verify));
+  return {std::max({need.host, check, surfaces.host ? surfaces.host + result : 0}),
+          std::max(need.device, surfaces.device)};
 }
 
-void write_plan(const Options& options, const Body& body, const MomentProblem& problem, const Backend& backend) {
+void write_mass_plan(const Options& options, const Body& body, const MomentProblem& problem, const Backend& backend) {
   const plan::Moments plan = plan::moments(problem, int(backend.facts().subgroup));
-  const MemoryNeed need = memory_need(options, problem, backend);
-  write_stdout(mesh_line(body.surface.mesh()) + "\n");
   write_stdout(
       fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, {:.9g}) "
                   "({}), R = {:.9g}\n",
                   options.lmax, Coefficients::count(options.lmax), body.origin.x(), body.origin.y(), body.origin.z(),
                   body.origin_kind, body.brillouin_radius));
-  write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
   write_stdout(fmt::format("work: {} pairs of triangles, {:.3g} of {:.3g} recursion entries after the cut-off {:.0e}\n",
                            plan.pair_count, plan.elements, plan.full_elements, options.cut_off));
+}
+
+void write_plan(const Options& options, const ExpansionChoice& choice, const Body& body, const MomentProblem& problem,
+                const Backend& backend) {
+  const MemoryNeed need = memory_need(options, choice, problem, backend);
+  write_stdout(mesh_line(body.surface.mesh()) + "\n");
+  for (const std::string& map : choice.maps)
+    write_stdout(fmt::format("plan: surface over the {} map to degree {}, {} coefficients of each of six fields\n", map,
+                             options.lmax, SphereCoefficients::count(options.lmax)));
+  if (choice.mass) write_mass_plan(options, body, problem, backend);
+  write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
   write_stdout(
       fmt::format("memory: at most {} MiB on the host and {} MiB on the device, beside the mesh and the program; "
                   "JSON of about {} MiB\n",
-                  (need.host >> 20) + 1, (need.device + (1 << 20) - 1) >> 20, (json_bytes(options.lmax) >> 20) + 1));
+                  (need.host >> 20) + 1, (need.device + (1 << 20) - 1) >> 20, (all_json_bytes(choice) >> 20) + 1));
 }
 
-ExpandResult compute(const Options& options, const Common& common, Body body, std::unique_ptr<Backend> backend,
-                     std::vector<std::string> notes, Timings timings, Stopwatch& watch) {
+ExpandResult compute(const Options& options, const ExpansionChoice& choice, const Common& common, Body body,
+                     std::unique_ptr<Backend> backend, std::vector<std::string> notes, Timings timings,
+                     Stopwatch& watch) {
   ConsoleMonitor monitor(common.style());
   const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
   RunReport run;
-  Coefficients mass = backend->moments(problem, monitor, &run);
-  timings.moments = watch.lap();
-  Accuracy accuracy = verify_moments(problem, *backend, parse_verify(options.verify), options.seed, monitor);
-  if (accuracy.how != Verify::none) accuracy.agreements.push_back(compare_with_tensors(body, mass));
-  timings.verify = watch.lap();
+  Coefficients mass;
+  Accuracy accuracy;
+  accuracy.how = Verify::none;
+  if (choice.mass) {
+    mass = backend->moments(problem, monitor, &run);
+    timings.moments = watch.lap();
+    accuracy = verify_moments(problem, *backend, parse_verify(options.verify), options.seed, monitor);
+    if (accuracy.how != Verify::none) accuracy.agreements.push_back(compare_with_tensors(body, mass));
+    timings.verify = watch.lap();
+  }
+  std::vector<SurfaceResult> surfaces = expand_surfaces(choice, options.aliasing, body, *backend, monitor);
+  timings.surfaces = watch.lap();
   const Tensors second = tensors(body);
   timings.total = watch.total();
-  ExpandResult result{common.command,  utc_now(),           std::move(body), backend->facts(),
-                      options.cut_off, std::move(mass),     second,          std::move(run),
-                      timings,         std::move(accuracy), std::move(notes)};
+  ExpandResult result{common.command,   utc_now(),   std::move(body),    backend->facts(), options.cut_off,
+                      std::move(mass),  second,      std::move(run),     timings,          std::move(accuracy),
+                      std::move(notes), choice.mass, std::move(surfaces)};
   return result;
 }
 
 void run(const Options& options, Common& common) {
   Stopwatch watch;
   check_outputs(options);
+  const ExpansionChoice choice = chosen(options);
   const OriginChoice origin = parse_origin(options.origin);
   // Before long work: a result that cannot be written should fail now.
   std::vector<std::unique_ptr<AtomicFile>> files;
@@ -132,19 +168,20 @@ void run(const Options& options, Common& common) {
     notes.push_back(note);
   }
   const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
-  check_memory(memory_need(options, problem, *backend), *backend, "lower --lmax or take a mesh with fewer triangles");
+  check_memory(memory_need(options, choice, problem, *backend), *backend,
+               "lower --lmax or take a mesh with fewer triangles");
   if (options.dry_run) {
-    write_plan(options, body, problem, *backend);
+    write_plan(options, choice, body, problem, *backend);
     return;
   }
   const ExpandResult result =
-      compute(options, common, std::move(body), std::move(backend), std::move(notes), timings, watch);
+      compute(options, choice, common, std::move(body), std::move(backend), std::move(notes), timings, watch);
 
   const bool writes_json = options.json || std::any_of(options.outputs.begin(), options.outputs.end(),
                                                        [](const std::string& o) { return ends_with(o, ".json"); });
-  if (writes_json && json_bytes(options.lmax) > large_json && !common.quiet)
-    say(fmt::format("cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n",
-                    json_bytes(options.lmax) / 1000000));
+  if (writes_json && all_json_bytes(choice) > large_json && !common.quiet)
+    say(fmt::format("cowgpu: the JSON will have about {} MB{}\n", all_json_bytes(choice) / 1000000,
+                    choice.maps.empty() ? "; -o FILE.csv is smaller" : ""));
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Sink sink = [&](std::string_view text) {
       check_stop(ConsoleMonitor(ProgressStyle::none));
@@ -176,12 +213,24 @@ void run(const Options& options, Common& common) {
 
 void add_expand(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("expand", "Multipole moments of a closed mesh");
+  CLI::App* command =
+      app.add_subcommand("expand", "Multipole moments of a closed mesh, and its surface over maps to the sphere");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
   command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
       ->check(CLI::Range(0, largest_degree))
       ->capture_default_str();
-  command->add_option("--of", options->of, "What to expand: mass")->capture_default_str();
+  command
+      ->add_option(
+          "--of", options->of,
+          "What to expand, separated by commas: mass, and the surface over the maps harmonic, stretch, smooth; or all")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--recipe", options->recipe,
+          "Of the harmonic map: default, or paper (as Higher multipoles of the cow has it, about the mesh's origin)")
+      ->check(CLI::IsMember({"default", "paper"}))
+      ->capture_default_str();
+  command->add_flag("--aliasing", options->aliasing, "Bound the aliasing of surface expansions, degree by degree");
   command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
       ->capture_default_str();
   command->add_option("--density", options->density, "Mass per cubed length unit of the mesh")->capture_default_str();

@@ -39,8 +39,8 @@ ordered_json json_of(const Timings& t, const RunReport& run) {
   ordered_json kernels = ordered_json::array();
   for (const KernelTime& k : run.kernels)
     kernels.push_back({{"kernel", k.kernel}, {"dispatches", k.dispatches}, {"seconds", k.seconds}});
-  return {{"load", t.load},     {"device", t.device}, {"moments", t.moments},
-          {"verify", t.verify}, {"total", t.total},   {"kernels", kernels}};
+  return {{"load", t.load},         {"device", t.device}, {"moments", t.moments}, {"verify", t.verify},
+          {"surfaces", t.surfaces}, {"total", t.total},   {"kernels", kernels}};
 }
 
 ordered_json json_of(const Accuracy& accuracy) {
@@ -86,12 +86,22 @@ void write_coefficients(const Coefficients& q, const Sink& sink) {
   sink(text);
 }
 
-// An object's members without the closing brace, so that more can follow.
-std::string open_members(const ordered_json& object) {
-  std::string text = json_text(object);
-  text.pop_back();
-  text.erase(text.find_last_not_of("\n ") + 1);
-  return text;
+void write_mass(const ExpandResult& result, const Sink& sink) {
+  const ordered_json mass = {
+      {"lmax", result.mass.lmax},
+      {"origin", json_of(result.mass.origin)},
+      {"origin_kind", result.body.origin_kind},
+      {"reference_radius", result.mass.reference_radius},
+      {"normalisation", "orthonormal"},
+      {"condon_shortley", true},
+      {"conjugated", false},
+      {"axes", "the mesh's; theta from +z, phi from +x towards +y"},
+      {"units", "density * length^3, in the mesh's length unit; Q_lm = value * reference_radius^l"},
+      {"density", result.mass.density},
+      {"cut_off", result.cut_off}};
+  sink("\"mass\": " + json_members(mass) + ",\n \"coefficients\": [");
+  write_coefficients(result.mass, sink);
+  sink("\n]}");
 }
 
 } // namespace
@@ -116,21 +126,15 @@ void write_json(const ExpandResult& result, const Sink& sink) {
                                {"second_moment", json_of(result.tensors.second_moment)}}},
                              {"timings", json_of(result.timings, result.run)},
                              {"accuracy", json_of(result.accuracy)}};
-  const ordered_json mass = {
-      {"lmax", result.mass.lmax},
-      {"origin", json_of(result.mass.origin)},
-      {"origin_kind", result.body.origin_kind},
-      {"reference_radius", result.mass.reference_radius},
-      {"normalisation", "orthonormal"},
-      {"condon_shortley", true},
-      {"conjugated", false},
-      {"axes", "the mesh's; theta from +z, phi from +x towards +y"},
-      {"units", "density * length^3, in the mesh's length unit; Q_lm = value * reference_radius^l"},
-      {"density", result.mass.density},
-      {"cut_off", result.cut_off}};
-  sink(open_members(head) + ",\n \"expansions\": {\"mass\": " + open_members(mass) + ",\n \"coefficients\": [");
-  write_coefficients(result.mass, sink);
-  sink("\n]}}\n}\n");
+  sink(json_members(head) + ",\n \"expansions\": {");
+  if (result.has_mass) write_mass(result, sink);
+  bool first = !result.has_mass;
+  for (const SurfaceResult& surface : result.surfaces) {
+    sink((first ? "\"" : ",\n \"") + surface.map.method + "\": ");
+    write_surface_json(surface, sink);
+    first = false;
+  }
+  sink("}\n}\n");
 }
 
 } // namespace cowgpu

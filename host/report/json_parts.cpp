@@ -29,6 +29,13 @@ std::string json_text(const ordered_json& document) {
   return document.dump(1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+std::string json_members(const ordered_json& object) {
+  std::string text = json_text(object);
+  text.pop_back();
+  text.erase(text.find_last_not_of("\n ") + 1);
+  return text;
+}
+
 std::string utc_now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }

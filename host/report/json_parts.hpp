@@ -15,6 +15,8 @@ nlohmann::ordered_json device_json(const DeviceFacts& device);
 nlohmann::ordered_json program_json();
 /// A document's text, indented by one; what is not UTF-8 is replaced.
 std::string json_text(const nlohmann::ordered_json& document);
+/// An object's text without the closing brace, so that more members can follow.
+std::string json_members(const nlohmann::ordered_json& object);
 /// Now, UTC, ISO 8601.
 std::string utc_now();
 

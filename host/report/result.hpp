@@ -4,6 +4,7 @@
 #include "host/backend.hpp"
 #include "host/mesh/body.hpp"
 #include "host/mesh/tensors.hpp"
+#include "host/report/surface_result.hpp"
 #include "host/spectrum/verify.hpp"
 
 #include <functional>
@@ -19,7 +20,8 @@ struct Timings {
   double device = 0;  ///< opening the device
   double moments = 0; ///< planning, computing, normalising
   double verify = 0;
-  double total = 0; ///< since the program started
+  double surfaces = 0; ///< maps to the sphere and their expansions
+  double total = 0;    ///< since the program started
 };
 
 /// Result of `expand`.
@@ -35,6 +37,8 @@ struct ExpandResult {
   Timings timings;
   Accuracy accuracy;
   std::vector<std::string> notes; ///< sentences: what was done to the mesh, why the CPU was used
+  bool has_mass = true;           ///< false: no mass multipoles were asked for; mass, run and accuracy say nothing
+  std::vector<SurfaceResult> surfaces;
 };
 
 /// Where text goes: a stream or a file.
@@ -53,10 +57,10 @@ void write_screen(const ExpandResult& result, const Sink& sink);
 /// The result as JSON after data/schemas/cowgpu.result.v1.json, streamed; numbers read back as the same doubles.
 void write_json(const ExpandResult& result, const Sink& sink);
 
-/// Bytes that write_json() will write, to about ten per cent.
+/// Bytes that write_json() will write for the mass multipoles, to about ten per cent.
 std::uint64_t json_bytes(int lmax);
 
-/// The coefficients as CSV: comment lines with conventions and provenance, a header, then l, m, re, im of Q_lm / R^l.
+/// The mass multipoles as CSV: comment lines with conventions and provenance, a header, then l, m, re, im of Q_lm / R^l.
 void write_csv(const ExpandResult& result, const Sink& sink);
 
 } // namespace cowgpu

@@ -1,3 +1,4 @@
+#include "host/io/mesh_source.hpp"
 #include "host/report/result.hpp"
 
 #include <fmt/format.h>
@@ -60,24 +61,37 @@ void write_accuracy(const ExpandResult& result, const Sink& sink) {
       result.mass.lmax, result.cut_off));
 }
 
-} // namespace
-
-void write_screen(const ExpandResult& result, const Sink& sink) {
+void write_computed(const ExpandResult& result, const Sink& sink) {
   const Coefficients& q = result.mass;
-  sink(mesh_line(result.body.surface.mesh()) + "\n");
-  for (const std::string& note : result.notes) sink("note: " + note + "\n");
   sink(fmt::format(
       "computed: mass multipoles to degree {}, {} coefficients, in {:.3f} s ({} pairs of triangles, {:.1f} % of "
       "the work after the cut-off {:.0e})\n",
       q.lmax, q.values.size(), result.run.seconds, result.run.pairs,
       100 * std::min(1.0, result.run.elements / result.run.full_elements), result.cut_off));
-  sink("device: " + device_line(result.device) + "\n");
-  write_accuracy(result, sink);
-  const Timings& t = result.timings;
-  sink(fmt::format("time: load {:.3f} s, device {:.3f} s, moments {:.3f} s, check {:.3f} s, in all {:.3f} s\n", t.load,
-                   t.device, t.moments, t.verify, t.total));
+}
 
-  sink(fmt::format("\nbody, in the mesh's length unit and axes, density {:.17g}\n", q.density));
+void write_leading(const ExpandResult& result, const Sink& sink) {
+  sink("\nleading mass multipoles Q_lm = integral of density r^l Y_lm about the origin: raw (not divided by R^l), in "
+       "mesh "
+       "units,\nnot conjugated; Y_lm orthonormal with the Condon-Shortley phase, polar axis z; Q_l,-m = (-1)^m conj "
+       "Q_lm\n");
+  write_table(result.mass, sink);
+}
+
+} // namespace
+
+void write_screen(const ExpandResult& result, const Sink& sink) {
+  sink(mesh_line(result.body.surface.mesh()) + "\n");
+  for (const std::string& note : result.notes) sink("note: " + note + "\n");
+  if (result.has_mass) write_computed(result, sink);
+  sink("device: " + device_line(result.device) + "\n");
+  if (result.has_mass) write_accuracy(result, sink);
+  const Timings& t = result.timings;
+  sink(fmt::format(
+      "time: load {:.3f} s, device {:.3f} s, moments {:.3f} s, check {:.3f} s, surfaces {:.3f} s, in all {:.3f} s\n",
+      t.load, t.device, t.moments, t.verify, t.surfaces, t.total));
+
+  sink(fmt::format("\nbody, in the mesh's length unit and axes, density {:.17g}\n", result.body.density));
   sink(fmt::format("  {:<26} {:.15g}\n", "volume", result.body.volume));
   sink(fmt::format("  {:<26} {:.15g}\n", "mass", result.body.mass()));
   sink(fmt::format("  {:<26} {:.15g}\n", "area", result.body.area));
@@ -85,14 +99,13 @@ void write_screen(const ExpandResult& result, const Sink& sink) {
   sink(fmt::format("  {:<26} {} ({})\n", "origin", vector_text(result.body.origin), result.body.origin_kind));
   sink(fmt::format("  {:<26} {:.15g}\n", "Brillouin radius R", result.body.brillouin_radius));
 
-  sink("\nleading mass multipoles Q_lm = integral of density r^l Y_lm about the origin: raw (not divided by R^l), in "
-       "mesh "
-       "units,\nnot conjugated; Y_lm orthonormal with the Condon-Shortley phase, polar axis z; Q_l,-m = (-1)^m conj "
-       "Q_lm\n");
-  write_table(q, sink);
+  if (result.has_mass) write_leading(result, sink);
   sink("\ntensors about the origin\n");
   write_matrix("quadrupole 3 x x - r^2", result.tensors.quadrupole, sink);
   write_matrix("inertia r^2 - x x", result.tensors.inertia, sink);
+  for (const SurfaceResult& surface : result.surfaces)
+    write_surface_screen(surface, surface.recipe == "paper" && result.body.surface.mesh().sha256 == benchmark_sha256,
+                         sink);
 }
 
 } // namespace cowgpu

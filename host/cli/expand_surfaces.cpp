@@ -1,0 +1,99 @@
+#include "host/cli/expand_surfaces.hpp"
+
+#include "host/clock.hpp"
+#include "host/error.hpp"
+#include "host/map/harmonic.hpp"
+#include "host/map/smooth.hpp"
+#include "host/map/stretch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+namespace cowgpu::cli {
+namespace {
+
+constexpr std::array map_names = {"harmonic", "stretch", "smooth"};
+
+SphereMap make_map(const std::string& method, bool paper, const ManifoldSurface& surface, Monitor& monitor) {
+  if (method == "stretch") return stretch_map(surface, {}, monitor);
+  if (method == "smooth") return smooth_map(surface);
+  return harmonic_map(surface, paper ? HarmonicOptions::paper_recipe() : HarmonicOptions{});
+}
+
+SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choice, bool estimate_aliasing,
+                          const Body& body, const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
+  const bool paper = choice.paper && method == "harmonic";
+  SurfaceResult result;
+  result.recipe = paper ? "paper" : "default";
+  result.origin_kind = paper ? "mesh" : body.origin_kind;
+  result.closest_point = paper;
+  const auto start = Clock::now();
+  result.map = make_map(method, paper, surface, monitor);
+  result.map_seconds = seconds_since(start);
+  result.quality = judge(surface, result.map, std::max(choice.lmax, 1));
+  ExpandSurfaceOptions options;
+  options.lmax = choice.lmax;
+  options.origin = paper ? Vec3::Zero() : body.origin;
+  options.closest_point = paper;
+  options.signed_dphi = !paper;
+  options.estimate_aliasing = estimate_aliasing;
+  result.expansion =
+      expand_surface(surface.vertices(), surface.faces(), result.map, options, backend, monitor, &result.report);
+  return result;
+}
+
+} // namespace
+
+ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, int lmax) {
+  ExpansionChoice choice;
+  choice.lmax = lmax;
+  choice.paper = recipe == "paper";
+  std::array<bool, map_names.size()> wanted{};
+  std::istringstream list(of + ",");
+  for (std::string word; std::getline(list, word, ',');) {
+    const auto map = std::find(map_names.begin(), map_names.end(), word);
+    if (word == "all") {
+      choice.mass = true;
+      wanted.fill(true);
+    } else if (word == "mass")
+      choice.mass = true;
+    else if (map != map_names.end())
+      wanted[std::size_t(map - map_names.begin())] = true;
+    else
+      throw Error(
+          Fault::bad_argument,
+          fmt::format("--of {}: there is no expansion \"{}\"; there are mass, harmonic, stretch, smooth and all, "
+                      "separated by commas",
+                      of, word));
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (wanted[i]) choice.maps.emplace_back(map_names[i]);
+  if (choice.paper && !wanted[0])
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--recipe paper is about the harmonic map, and --of {} does not ask for that; add --of harmonic",
+                    of));
+  return choice;
+}
+
+MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend) {
+  if (choice.maps.empty()) return {};
+  MemoryNeed need = expand_surface_memory(faces, choice.lmax, backend);
+  need.host += (choice.maps.size() - 1) * 6 * 16 * SphereCoefficients::count(choice.lmax);
+  return need;
+}
+
+std::vector<SurfaceResult> expand_surfaces(const ExpansionChoice& choice, bool estimate_aliasing, const Body& body,
+                                           Backend& backend, Monitor& monitor) {
+  std::vector<SurfaceResult> results;
+  if (choice.maps.empty()) return results;
+  const auto surface = ManifoldSurface::from(body.surface);
+  for (const std::string& method : choice.maps)
+    results.push_back(expand_over(method, choice, estimate_aliasing, body, surface, backend, monitor));
+  return results;
+}
+
+} // namespace cowgpu::cli

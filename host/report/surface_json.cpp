@@ -1,0 +1,77 @@
+#include "host/report/surface_result.hpp"
+
+#include "host/io/number.hpp"
+#include "host/report/json_parts.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace cowgpu {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json map_json(const SurfaceResult& result) {
+  const MapQuality& quality = result.quality;
+  return {{"method", result.map.method},        {"lookup", result.closest_point ? "closest point" : "ray"},
+          {"flipped", quality.flipped.size()},  {"flipped_area", quality.flipped_area},
+          {"flat", quality.flat.size()},        {"degree", quality.degree},
+          {"inside_out", quality.inside_out},   {"unseen", quality.unseen},
+          {"unseen_area", quality.unseen_area}, {"notes", result.map.notes}};
+}
+
+ordered_json aliasing_json(const ExpandSurfaceReport& report) {
+  ordered_json rows = ordered_json::array();
+  for (const auto& row : report.aliasing) rows.push_back(row);
+  return rows;
+}
+
+} // namespace
+
+std::uint64_t surface_json_bytes(int lmax) {
+  return 4096 + 270 * std::uint64_t(SphereCoefficients::count(lmax));
+}
+
+void write_surface_json(const SurfaceResult& result, const std::function<void(std::string_view)>& sink) {
+  const SurfaceExpansion& expansion = result.expansion;
+  const SphereCoefficients& a = expansion.coefficients;
+  const Vec3& o = expansion.origin;
+  const ordered_json head = {
+      {"lmax", a.lmax},
+      {"origin", {o.x(), o.y(), o.z()}},
+      {"origin_kind", result.origin_kind},
+      {"recipe", result.recipe},
+      {"fields", surface_field_names},
+      {"removed_means", {{"f_dtheta", expansion.mean_dtheta}, {"f_dphi", expansion.mean_dphi}}},
+      {"normalisation", "orthonormal"},
+      {"condon_shortley", true},
+      {"axes", "the mesh's; theta from +z, phi from +x towards +y"},
+      {"units", "f_r, x, y, z in the mesh's length unit, f_dtheta and f_dphi in radians; x, y, z in mesh coordinates"},
+      {"dphi", expansion.signed_dphi ? "signed" : "absolute"},
+      {"map", map_json(result)},
+      {"grid", {{"kind", "gl"}, {"rings", result.report.rings}, {"ring_length", result.report.ring_length}}},
+      {"aliasing", aliasing_json(result.report)},
+      {"timings",
+       {{"map", result.map_seconds},
+        {"sample", result.report.sample_seconds},
+        {"analyse", result.report.analyse_seconds}}}};
+  sink(json_members(head) + ",\n \"coefficients\": [");
+  std::string text;
+  for (int l = 0; l <= a.lmax; ++l)
+    for (int m = 0; m <= l; ++m) {
+      text += l == 0 ? "\n[" : ",\n[";
+      text += std::to_string(l) + ", " + std::to_string(m);
+      for (int f = 0; f < a.fields; ++f)
+        for (const double part : {a.at(f, l, m).real(), a.at(f, l, m).imag()}) {
+          text += ", ";
+          append_number(text, part);
+        }
+      text += "]";
+      if (text.size() > 65536) {
+        sink(text);
+        text.clear();
+      }
+    }
+  sink(text + "\n]}");
+}
+
+} // namespace cowgpu

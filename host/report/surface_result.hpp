@@ -1,0 +1,36 @@
+// One of the surface expansions in a result.
+#pragma once
+
+#include "host/map/quality.hpp"
+#include "host/spectrum/expand_surface.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cowgpu {
+
+struct SurfaceResult {
+  SphereMap map;
+  std::string recipe;      ///< "default" or "paper"
+  std::string origin_kind; ///< as in Body
+  bool closest_point = false;
+  SurfaceExpansion expansion;
+  ExpandSurfaceReport report;
+  MapQuality quality; ///< for the expansion's degree, 1 at least
+  double map_seconds = 0;
+};
+
+/// The member of `expansions` as text after data/schemas/cowgpu.result.v1.json, streamed.
+void write_surface_json(const SurfaceResult& result, const std::function<void(std::string_view)>& sink);
+
+/// Bytes that writes, to about ten per cent.
+std::uint64_t surface_json_bytes(int lmax);
+
+/// For people: the map, its flaws, the leading coefficients to degree 3; beside the paper's table if `beside_paper`.
+void write_surface_screen(const SurfaceResult& result, bool beside_paper,
+                          const std::function<void(std::string_view)>& sink);
+
+} // namespace cowgpu

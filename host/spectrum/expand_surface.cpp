@@ -1,0 +1,132 @@
+#include "host/spectrum/expand_surface.hpp"
+
+#include "host/clock.hpp"
+#include "host/error.hpp"
+#include "host/map/closest_point.hpp"
+#include "host/map/sample_fields.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace cowgpu {
+namespace {
+
+constexpr int fields = 6;
+
+void check(std::span<const Vec3> vertices, const SphereMap& map, const ExpandSurfaceOptions& options) {
+  if (options.lmax < 0 || options.lmax > largest_surface_degree)
+    throw Error(Fault::bad_argument,
+                fmt::format("surfaces are expanded to degree 0 to {}, not {}", largest_surface_degree, options.lmax));
+  if (!options.origin.allFinite()) throw Error(Fault::bad_argument, "the origin of an expansion must be finite");
+  if (map.positions.size() != vertices.size())
+    throw Error(Fault::bad_argument,
+                fmt::format("the map has {} positions and the mesh {} vertices: it is of another mesh",
+                            map.positions.size(), vertices.size()));
+}
+
+// In (-pi, pi], for differences of two azimuths from [-pi, pi] and [0, 2 pi).
+double wrapped(double angle) {
+  while (angle > std::numbers::pi) angle -= 2 * std::numbers::pi;
+  while (angle <= -std::numbers::pi) angle += 2 * std::numbers::pi;
+  return angle;
+}
+
+// [field][ring][longitude] of all six, from x, y, z.
+std::vector<double> surface_fields(const std::vector<double>& positions, const SphereGrid& grid,
+                                   const ExpandSurfaceOptions& options) {
+  const std::size_t n = grid.points(), length = std::size_t(grid.ring_length);
+  std::vector<double> values(fields * n);
+  std::copy(positions.begin(), positions.end(), values.begin() + std::ptrdiff_t(3 * n));
+  for (std::size_t p = 0; p < n; ++p) {
+    const Vec3 from_origin = Vec3(positions[p], positions[n + p], positions[2 * n + p]) - options.origin;
+    const double r = from_origin.norm();
+    values[p] = r;
+    if (r == 0) continue;
+    const double theta = std::atan2(std::hypot(from_origin.x(), from_origin.y()), from_origin.z());
+    const double dphi = wrapped(std::atan2(from_origin.y(), from_origin.x()) - grid.phi(int(p % length)));
+    values[n + p] = theta - grid.theta[p / length];
+    values[2 * n + p] = options.signed_dphi ? dphi : std::abs(dphi);
+  }
+  return values;
+}
+
+SphereCoefficients expand_on(const SphereGrid& grid, std::span<const Vec3> vertices, std::span<const Face> faces,
+                             const SphereMap& map, const ExpandSurfaceOptions& options, Backend& backend,
+                             Monitor& monitor, ExpandSurfaceReport& report) {
+  const auto start = Clock::now();
+  std::vector<double> values;
+  {
+    const SphereSamples samples = options.closest_point ? closest_samples(map.positions, faces, grid, monitor)
+                                                        : backend.sample(map.positions, faces, grid, monitor);
+    report.rings = samples.rings;
+    report.ring_length = samples.ring_length;
+    report.faces_hit = samples.faces_hit;
+    report.flipped_faces = samples.flipped_faces;
+    report.folded_points = samples.folded_points;
+    values = surface_fields(sample_positions(samples, faces, vertices), grid, options);
+  }
+  report.sample_seconds = seconds_since(start);
+  const auto sampled = Clock::now();
+  SphereCoefficients coefficients(options.lmax, fields);
+  backend.sphere_transform(grid, options.lmax)->analyse(fields, values, coefficients.values, monitor);
+  report.analyse_seconds = seconds_since(sampled);
+  return coefficients;
+}
+
+std::vector<std::array<double, 6>> differences(const SphereCoefficients& a, const SphereCoefficients& b) {
+  std::vector<std::array<double, 6>> norms(std::size_t(a.lmax) + 1);
+  for (int l = 0; l <= a.lmax; ++l)
+    for (int f = 0; f < fields; ++f) {
+      double sum = 0;
+      for (int m = 0; m <= l; ++m) sum += (m == 0 ? 1 : 2) * std::norm(a.at(f, l, m) - b.at(f, l, m));
+      norms[std::size_t(l)][std::size_t(f)] = std::sqrt(sum);
+    }
+  return norms;
+}
+
+} // namespace
+
+SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const Face> faces, const SphereMap& map,
+                                const ExpandSurfaceOptions& options, Backend& backend, Monitor& monitor,
+                                ExpandSurfaceReport* report) {
+  check(vertices, map, options);
+  ExpandSurfaceReport own;
+  ExpandSurfaceReport& found = report ? *report : own;
+  found = {};
+  const auto on_grid = [&](int degree, ExpandSurfaceReport& to) {
+    return expand_on(make_grid(GridKind::gauss_legendre, degree), vertices, faces, map, options, backend, monitor, to);
+  };
+  SurfaceExpansion expansion;
+  expansion.coefficients = on_grid(2 * options.lmax, found);
+  if (options.estimate_aliasing) {
+    ExpandSurfaceReport coarse;
+    found.aliasing = differences(expansion.coefficients, on_grid(options.lmax, coarse));
+  }
+  expansion.origin = options.origin;
+  expansion.signed_dphi = options.signed_dphi;
+  const auto take_mean = [&](int field) {
+    const double mean = expansion.coefficients.at(field, 0, 0).real() / std::sqrt(4 * std::numbers::pi);
+    expansion.coefficients.at(field, 0, 0) = 0;
+    return mean;
+  };
+  expansion.mean_dtheta = take_mean(1);
+  expansion.mean_dphi = take_mean(2);
+  return expansion;
+}
+
+MemoryNeed expand_surface_memory(std::uint64_t faces, int lmax, const Backend& backend) {
+  const SphereGrid grid = make_grid(GridKind::gauss_legendre, 2 * lmax);
+  const MemoryNeed sampling = backend.sample_memory(faces, grid);
+  const MemoryNeed transform = backend.sphere_transform_memory(grid, lmax, fields);
+  const std::uint64_t point = sizeof(double);
+  const std::uint64_t coefficients = 2 * fields * SphereCoefficients::count(lmax) * sizeof(std::complex<double>);
+  // Positions and all six fields beside the samples; then the six fields beside the transform.
+  return {
+      std::max(sampling.host + (3 + fields) * point * grid.points(), transform.host + fields * point * grid.points()) +
+          coefficients,
+      std::max(sampling.device, transform.device)};
+}
+
+} // namespace cowgpu

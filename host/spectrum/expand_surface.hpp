@@ -1,0 +1,54 @@
+// A surface's spherical-harmonic coefficients, over the sphere that a map gives it.
+#pragma once
+
+#include "host/map/sphere_map.hpp"
+#include "host/spectrum/reconstruct.hpp"
+
+#include <array>
+#include <vector>
+
+namespace cowgpu {
+
+/// The names of SurfaceExpansion's fields, in their order.
+inline constexpr std::array surface_field_names = {"f_r", "f_dtheta", "f_dphi", "x", "y", "z"};
+
+struct ExpandSurfaceOptions {
+  int lmax = 0;               ///< 0 to largest_surface_degree
+  Vec3 origin = Vec3::Zero(); ///< of f_r, f_dtheta and f_dphi, in mesh coordinates
+  /// Look a direction up at the closest point of the chord triangles (closest_point.hpp), not along the ray
+  /// (Backend::sample).
+  bool closest_point = false;
+  bool signed_dphi = true; ///< false: expand |f_dphi|, as the paper's table does
+  /// Expand once more on the grid of degree lmax, with a quarter of the points, for ExpandSurfaceReport::aliasing.
+  bool estimate_aliasing = false;
+};
+
+/// Fields are sampled on a grid of twice the degree.
+inline constexpr int largest_surface_degree = largest_grid_degree / 2;
+
+/// What came of an expansion beside the coefficients.
+struct ExpandSurfaceReport {
+  int rings = 0, ring_length = 0;
+  std::size_t faces_hit = 0;     ///< faces that any point of the grid lies in
+  std::size_t flipped_faces = 0; ///< faces of the map with det(a, b, c) < 0: nearly all if it is inside-out
+  std::size_t folded_points = 0; ///< points inside more than one triangle; 0 with closest_point
+  double sample_seconds = 0, analyse_seconds = 0; ///< wall time; the estimate of aliasing is in neither
+  /// [degree][field]: norm sqrt(sum over m = -l ... l of |a_lm - a'_lm|^2), a' from the coarser grid. Fields of a mesh are
+  /// not band-limited; this bounds what aliasing leaves in a as long as refining the grid lowers it. Empty if not asked for.
+  std::vector<std::array<double, 6>> aliasing;
+};
+
+/// Samples the map on the Gauss-Legendre grid of degree 2 lmax; interpolates the position F linearly in the triangles;
+/// forms f_r = |F - origin|, f_dtheta = theta(F - origin) - theta and f_dphi = phi(F - origin) - phi wrapped to (-pi, pi],
+/// x, y, z; removes the mean of the two angles; and analyses all six to lmax. The angles are 0 where F is the origin.
+///
+/// `faces` and `vertices` are the mesh's; the map has a position for each vertex. Throws Error(bad_argument) for lmax out
+/// of range, an origin that is not finite or a map of another mesh, and what Backend::sample and sphere_transform throw.
+SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const Face> faces, const SphereMap& map,
+                                const ExpandSurfaceOptions& options, Backend& backend, Monitor& monitor,
+                                ExpandSurfaceReport* report = nullptr);
+
+/// Upper bound of the memory that takes, its result included.
+MemoryNeed expand_surface_memory(std::uint64_t faces, int lmax, const Backend& backend);
+
+} // namespace cowgpu

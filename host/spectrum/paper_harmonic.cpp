@@ -1,0 +1,47 @@
+#include "host/spectrum/paper_harmonic.hpp"
+
+#include "host/error.hpp"
+
+#include <cmath>
+
+namespace cowgpu {
+namespace {
+
+constexpr PaperRow table[] = {
+    {0, 0, {{{0.5825, 0}, {0, 0}, {0, 0}}}},
+    {1, 0, {{{-0.0996, 0}, {2.5793, 0}, {-0.4817, 0}}}},
+    {1, 1, {{{0.0237, 0.0}, {-0.3161, 1.66}, {0.475, 0.4784}}}},
+    {2, 0, {{{0.0106, 0}, {-0.0125, 0}, {-0.2309, 0}}}},
+    {2, 1, {{{0.0193, 0.0061}, {0.0425, -0.2846}, {0.1581, 1.5432}}}},
+    {2, 2, {{{0.0591, 0.0193}, {0.1197, -0.18}, {0.8938, -0.0098}}}},
+    {3, 0, {{{0.0005, 0}, {0.1995, 0}, {0.2132, 0}}}},
+    {3, 1, {{{-0.002, 0.0003}, {0.0226, -0.0683}, {0.1065, -0.3695}}}},
+    {3, 2, {{{-0.0358, -0.0127}, {-0.0657, 0.0821}, {-0.2082, -0.0496}}}},
+    {3, 3, {{{-0.0083, -0.0094}, {-0.0272, 0.0286}, {-0.1859, 0.19}}}},
+};
+
+} // namespace
+
+std::span<const PaperRow> paper_harmonic_table() {
+  return table;
+}
+
+std::array<double, 3> paper_misfits(const SurfaceExpansion& expansion) {
+  if (expansion.coefficients.lmax < 3)
+    throw Error(Fault::bad_argument, "the paper's table goes to degree 3: expand to degree 3 at least");
+  std::array<double, 3> misfits{};
+  for (int f = 0; f < 3; ++f) {
+    double difference = 0, size = 0;
+    for (const PaperRow& row : table) {
+      if (row.l == 0) continue;
+      const int times = row.m == 0 ? 1 : 2;
+      const std::complex<double> value = row.values[std::size_t(f)];
+      difference += times * std::norm(expansion.coefficients.at(f, row.l, row.m) - value);
+      size += times * std::norm(value);
+    }
+    misfits[std::size_t(f)] = std::sqrt(difference / size);
+  }
+  return misfits;
+}
+
+} // namespace cowgpu

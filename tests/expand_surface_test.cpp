@@ -1,0 +1,178 @@
+#include "host/spectrum/expand_surface.hpp"
+
+#include "host/error.hpp"
+#include "host/map/harmonic.hpp"
+#include "host/spectrum/paper_harmonic.hpp"
+#include "tests/support/meshes.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+using namespace cowgpu;
+using namespace cowgpu::test;
+
+namespace {
+
+const double sqrt_4pi = std::sqrt(4 * std::numbers::pi);
+
+SphereMap radial_map(const std::vector<Vec3>& vertices) {
+  SphereMap map;
+  for (const Vec3& v : vertices) map.positions.push_back(v.normalized());
+  return map;
+}
+
+SurfaceExpansion expand(const RawMesh& mesh, const SphereMap& map, const ExpandSurfaceOptions& options,
+                        ExpandSurfaceReport* report = nullptr) {
+  const auto backend = make_cpu_backend();
+  Monitor monitor;
+  return expand_surface(mesh.vertices, mesh.faces, map, options, *backend, monitor, report);
+}
+
+double largest(const SurfaceExpansion& expansion, int field, int from_degree) {
+  double most = 0;
+  for (int l = from_degree; l <= expansion.coefficients.lmax; ++l)
+    for (int m = 0; m <= l; ++m) most = std::max(most, std::abs(expansion.coefficients.at(field, l, m)));
+  return most;
+}
+
+} // namespace
+
+TEST_CASE("radial projection moves no direction: both angles of a star-shaped body vanish", "[expand_surface]") {
+  const RawMesh mesh = box({2, 3, 4}, {-1, -1, -1.5});
+  ExpandSurfaceOptions options;
+  options.lmax = 20;
+  ExpandSurfaceReport report;
+  const SurfaceExpansion expansion = expand(mesh, radial_map(mesh.vertices), options, &report);
+  CHECK(largest(expansion, 1, 0) < 2e-15);
+  CHECK(largest(expansion, 2, 0) < 6e-15);
+  CHECK(std::abs(expansion.mean_dtheta) < 1e-15);
+  CHECK(std::abs(expansion.mean_dphi) < 1e-15);
+  CHECK(largest(expansion, 0, 1) > 0.1);
+  CHECK(report.rings == 41);
+  CHECK(report.flipped_faces == 0);
+  CHECK(report.faces_hit == mesh.faces.size());
+}
+
+TEST_CASE("a sphere of triangles has a constant f_r up to its sagitta, and x, y, z of degree 1", "[expand_surface]") {
+  const double radius = 3;
+  const RawMesh coarse = icosphere(4, radius), fine = icosphere(5, radius);
+  ExpandSurfaceOptions options;
+  options.lmax = 8;
+  const SurfaceExpansion a = expand(coarse, radial_map(coarse.vertices), options),
+                         b = expand(fine, radial_map(fine.vertices), options);
+  const double off_a = radius * sqrt_4pi - a.coefficients.at(0, 0, 0).real(),
+               off_b = radius * sqrt_4pi - b.coefficients.at(0, 0, 0).real();
+  CHECK(off_a > 0);
+  CHECK(off_a / off_b == Approx(4).epsilon(0.01));
+  CHECK(largest(a, 0, 1) < off_a);
+  // x = r sin theta cos phi = -r sqrt(2 pi / 3) (Y_11 - Y_1,-1), z = r sqrt(4 pi / 3) Y_10
+  const double x = radius * std::sqrt(2 * std::numbers::pi / 3);
+  CHECK(std::abs(b.coefficients.at(3, 1, 1) + x) < off_b);
+  CHECK(std::abs(b.coefficients.at(4, 1, 1) - std::complex<double>(0, x)) < off_b);
+  CHECK(std::abs(b.coefficients.at(5, 1, 0) - x * std::sqrt(2)) < off_b);
+  for (const int field : {3, 4, 5}) CHECK(largest(b, field, 2) < off_b);
+}
+
+TEST_CASE("a turn of the map about z is the mean of f_dphi, wrapped, and absolute where asked for",
+          "[expand_surface]") {
+  const RawMesh mesh = box({2, 3, 4}, {-1, -1, -1.5});
+  for (const double turn : {0.7, -2.0, 3.0, 4.0}) {
+    SphereMap map = radial_map(mesh.vertices);
+    for (Vec3& p : map.positions) p = Eigen::AngleAxisd(turn, Vec3::UnitZ()) * p;
+    const double expected = turn > std::numbers::pi ? 2 * std::numbers::pi - turn : -turn;
+    ExpandSurfaceOptions options;
+    options.lmax = 6;
+    const SurfaceExpansion expansion = expand(mesh, map, options);
+    CHECK(expansion.mean_dphi == Approx(expected).epsilon(1e-14));
+    CHECK(largest(expansion, 2, 0) < 2e-14);
+    CHECK(expansion.signed_dphi);
+    options.signed_dphi = false;
+    const SurfaceExpansion absolute = expand(mesh, map, options);
+    CHECK(absolute.mean_dphi == Approx(std::abs(expected)).epsilon(1e-14));
+    CHECK_FALSE(absolute.signed_dphi);
+  }
+}
+
+TEST_CASE("the origin moves f_r and leaves x, y, z in mesh coordinates", "[expand_surface]") {
+  const RawMesh mesh = box({2, 3, 4}, {-1, -1, -1.5});
+  const SphereMap map = radial_map(mesh.vertices);
+  ExpandSurfaceOptions options;
+  options.lmax = 5;
+  const SurfaceExpansion first = expand(mesh, map, options);
+  options.origin = {0.2, -0.1, 0.3};
+  const SurfaceExpansion second = expand(mesh, map, options);
+  for (int field = 3; field < 6; ++field)
+    for (int l = 0; l <= 5; ++l)
+      for (int m = 0; m <= l; ++m) CHECK(first.coefficients.at(field, l, m) == second.coefficients.at(field, l, m));
+  CHECK(std::abs(first.coefficients.at(0, 1, 0) - second.coefficients.at(0, 1, 0)) > 0.1);
+  CHECK(second.origin == options.origin);
+  RawMesh moved = translated(mesh, -options.origin);
+  options.origin = Vec3::Zero();
+  const SurfaceExpansion third = expand(moved, map, options);
+  for (int field = 0; field < 3; ++field)
+    for (int l = 0; l <= 5; ++l)
+      for (int m = 0; m <= l; ++m)
+        CHECK(std::abs(third.coefficients.at(field, l, m) - second.coefficients.at(field, l, m)) < 2e-14);
+}
+
+TEST_CASE("the estimate of aliasing falls with the degree and is there only if asked for", "[expand_surface]") {
+  const RawMesh mesh = box({2, 3, 4}, {-1, -1, -1.5});
+  const SphereMap map = radial_map(mesh.vertices);
+  ExpandSurfaceOptions options;
+  double before = 1;
+  for (const int lmax : {8, 32, 128}) {
+    options.lmax = lmax;
+    options.estimate_aliasing = true;
+    ExpandSurfaceReport report;
+    expand(mesh, map, options, &report);
+    REQUIRE(report.aliasing.size() == std::size_t(lmax) + 1);
+    double sum = 0;
+    for (const auto& row : report.aliasing) sum += row[0] * row[0];
+    CHECK(sum > 0);
+    CHECK(std::sqrt(sum) < before / 2);
+    before = std::sqrt(sum);
+  }
+  options.estimate_aliasing = false;
+  ExpandSurfaceReport report;
+  expand(mesh, map, options, &report);
+  CHECK(report.aliasing.empty());
+}
+
+TEST_CASE("maps of another mesh and degrees out of range are refused", "[expand_surface]") {
+  const RawMesh mesh = box({1, 1, 1}, {-0.5, -0.5, -0.5});
+  SphereMap map = radial_map(mesh.vertices);
+  ExpandSurfaceOptions options;
+  for (const int lmax : {-1, largest_surface_degree + 1}) {
+    options.lmax = lmax;
+    CHECK_THROWS_AS(expand(mesh, map, options), Error);
+  }
+  options.lmax = 2;
+  options.origin.x() = NAN;
+  CHECK_THROWS_AS(expand(mesh, map, options), Error);
+  options.origin = Vec3::Zero();
+  map.positions.pop_back();
+  CHECK_THROWS_AS(expand(mesh, map, options), Error);
+}
+
+TEST_CASE("the paper's recipe gives the paper's table of the harmonic map", "[expand_surface][benchmark]") {
+  const auto cow = benchmark_cow();
+  if (!cow) return skip_without_cow();
+  const SphereMap map = harmonic_map(ManifoldSurface::from(*cow), HarmonicOptions::paper_recipe());
+  ExpandSurfaceOptions options;
+  options.lmax = 32;
+  options.closest_point = true;
+  options.signed_dphi = false;
+  const SurfaceExpansion expansion = expand(cow->mesh(), map, options);
+  const auto misfits = paper_misfits(expansion);
+  CAPTURE(misfits[0], misfits[1], misfits[2]);
+  CHECK(misfits[0] <= 0.003);
+  CHECK(misfits[1] <= 0.001);
+  CHECK(misfits[2] <= 0.0015);
+  CHECK(std::abs(expansion.coefficients.at(0, 0, 0).real() - 0.5825) <= 2e-4);
+  CHECK(expansion.coefficients.at(1, 0, 0) == 0.0);
+  // Signed, f_dphi is another function altogether.
+  options.signed_dphi = true;
+  CHECK(paper_misfits(expand(cow->mesh(), map, options))[2] > 1);
+}
