@@ -214,7 +214,7 @@ TEST_CASE("the JSON of a map holds the findings of judge()", "[map-cli]") {
 }
 
 TEST_CASE("infinite shear is null in the JSON of a map, and flat triangles are listed", "[map-cli]") {
-  const auto surface = manifold(icosphere(1));
+  const auto surface = manifold(test::icosphere(1));
   SphereMap map{"file", surface.vertices(), {}};
   for (Vec3& p : map.positions) p.normalize();
   const Face& face = surface.faces()[9];
@@ -238,13 +238,13 @@ TEST_CASE("infinite shear is null in the JSON of a map, and flat triangles are l
 TEST_CASE("a file is read as a map only of the mesh it belongs to", "[map-cli]") {
   const TemporaryFolder folder;
   const std::string path = folder / "map.ply";
-  const auto surface = manifold(icosphere(1));
+  const auto surface = manifold(test::icosphere(1));
   std::vector<Vec3> positions = surface.vertices();
   for (Vec3& p : positions) p.normalize();
   write_ply_file(path, positions, surface.faces());
   CHECK(read_map(path, surface).positions == positions);
 
-  CHECK_THAT(fault_of_reading(path, manifold(icosphere(2))), StartsWith("bad-argument: ") && Contains("vertices"));
+  CHECK_THAT(fault_of_reading(path, manifold(test::icosphere(2))), StartsWith("bad-argument: ") && Contains("vertices"));
   CHECK_THAT(fault_of_reading(folder / "none.ply", surface), StartsWith("cannot-read: "));
   std::vector<Face> faces = surface.faces();
   std::swap(faces[3], faces[4]);
