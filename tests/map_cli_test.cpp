@@ -267,7 +267,7 @@ TEST_CASE("a file is read as a map only of the mesh it belongs to", "[map-cli]")
 
 TEST_CASE("vertices of no face are zero in a map's file and when it is read", "[map-cli]") {
   const TemporaryFolder folder;
-  RawMesh mesh = icosphere(1);
+  RawMesh mesh = test::icosphere(1);
   mesh.vertices.push_back({0.25, 0.5, 4});
   write_off(folder / "more.off", mesh);
   const std::string path = folder / "map.ply";
