@@ -23,7 +23,6 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/mesh", {"host"}},
     {"host/io", {"host", "host/map", "host/mesh"}},
     {"host/map", {"host", "host/mesh"}},
-    {"host/spectrum", {"host", "host/mesh", "host/plan", "host/reference"}},
     {"host/spectrum", {"host", "host/mesh", "host/map", "host/plan", "host/reference"}},
     {"host/report", {"host", "host/mesh", "host/map", "host/io", "host/spectrum"}},
     {"host/cli", {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/report", "host/plan"}},
