@@ -1,6 +1,7 @@
 // Verifies the stage `moments`, then times it: against a lattice quadrature at degree 32, and alone up to degree 2048.
 // How to read the output stands in bench/moments.md.
 #include "bench/moments_quadrature.hpp"
+#include "bench/report.hpp"
 #include "host/backend.hpp"
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
@@ -15,7 +16,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <hwy/targets.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -23,7 +23,6 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <map>
 #include <memory>
 #include <utility>
 
@@ -31,7 +30,6 @@ namespace cowgpu::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Json = nlohmann::ordered_json;
 
 constexpr double flops_per_element = 60;
 constexpr int rival_lmax = 32, reference_lmax = 64;
@@ -44,20 +42,6 @@ struct Options {
   int runs = 0;
   GpuOptions gpu;
 };
-
-double median(std::vector<double> v) {
-  if (v.empty()) return std::nan("");
-  std::sort(v.begin(), v.end());
-  const std::size_t half = v.size() / 2;
-  return v.size() % 2 ? v[half] : (v[half - 1] + v[half]) / 2;
-}
-
-// The median of a[i] / b[i]: values of one round are taken at nearly one time, so that a busy machine slows both.
-double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) ratios.push_back(a[i] / b[i]);
-  return median(std::move(ratios));
-}
 
 std::string milliseconds(double seconds) {
   if (std::isnan(seconds)) return "-";
@@ -106,9 +90,9 @@ struct Path {
   }
 };
 
-class Bench {
+class Bench : Report {
 public:
-  explicit Bench(const Options& options) : options_(options) {
+  explicit Bench(const Options& options) : Report(options.json), options_(options) {
     runs_ = options.runs > 0 ? options.runs : (options.quick ? 3 : 7);
   }
 
@@ -123,31 +107,10 @@ public:
         alone();
       }
     }
-    document_["passed"] = passed_;
-    if (options_.json)
-      fmt::print("{}\n", document_.dump(2));
-    else if (!passed_)
-      fmt::print("\nA verification FAILED.\n");
-    return passed_ ? 0 : 1;
+    return finish();
   }
 
 private:
-  template <class... Args>
-  void say(fmt::format_string<Args...> format, Args&&... args) {
-    if (options_.json) return;
-    fmt::print(format, std::forward<Args>(args)...);
-    std::fflush(stdout);
-  }
-
-  // Notes a check; prints it, and remembers a failure.
-  bool check(const std::string& what, double error, double allowed) {
-    const bool good = error <= allowed; // NaN fails
-    passed_ = passed_ && good;
-    say("  {:<58} {:8.1e}  (allowed {:.0e}){}\n", what, error, allowed, good ? "" : "  FAILED");
-    document_["checks"].push_back({{"what", what}, {"error", error}, {"allowed", allowed}, {"passed", good}});
-    return good;
-  }
-
   static RawMesh load(const std::string& name) {
     if (!name.empty()) return load_mesh(name);
     try {
@@ -433,16 +396,7 @@ private:
   double own_error_ = 0;
   std::vector<Path> paths_; // CPU with one thread, with all, and Vulkan if there is a device
   std::string no_vulkan_;
-  bool passed_ = true;
-  Json document_;
 };
-
-// Highway's better targets have the lower bits.
-void use_instruction_set(const std::string& name) {
-  static const std::map<std::string, std::int64_t> sets = {
-      {"AVX3", HWY_AVX3}, {"AVX2", HWY_AVX2}, {"SSE4", HWY_SSE4}, {"SSSE3", HWY_SSSE3}};
-  if (!name.empty()) hwy::DisableTargets(sets.at(name) - 1);
-}
 
 } // namespace
 } // namespace cowgpu::bench

@@ -1,14 +1,15 @@
 // Verifies the verbs `synthesise` and `analyse`, then times them against libsharp on the same grid in the same run. How
 // to read the output stands in bench/transforms.md.
+#include "bench/report.hpp"
 #include "host/backend.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/spectrum/roundtrip.hpp"
 #include "tests/support/libsharp.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <hwy/targets.h>
 #include <nlohmann/json.hpp>
 #include <omp.h>
 #include <sched.h>
@@ -20,15 +21,11 @@
 #include <cstdlib>
 #include <ctime>
 #include <functional>
-#include <map>
 #include <memory>
-#include <random>
 #include <utility>
 
 namespace cowgpu::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double map_tolerance = 1e-11; // against libsharp, of the largest value, to degree 1024
 constexpr double slow_call = 1;         // seconds; slower cases get fewer rounds
@@ -39,27 +36,6 @@ struct Options {
   std::string device = "auto", instruction_set;
   bool json = false, growth = false;
 };
-
-double median(std::vector<double> v) {
-  if (v.empty()) return std::nan("");
-  std::sort(v.begin(), v.end());
-  const std::size_t half = v.size() / 2;
-  return v.size() % 2 ? v[half] : (v[half - 1] + v[half]) / 2;
-}
-
-// The median of a[i] / b[i]: values of one round are taken at nearly one time, so that a busy machine slows both.
-double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) ratios.push_back(a[i] / b[i]);
-  return median(std::move(ratios));
-}
-
-// Largest error of a round trip over the largest coefficient.
-double round_trip_bound(int lmax) {
-  for (const auto& [degree, bound] : {std::pair{64, 1e-13}, {512, 5e-13}, {1024, 1e-12}, {2048, 3e-12}})
-    if (lmax <= degree) return bound;
-  return 1e-11;
-}
 
 // OMP_PROC_BIND pins the first thread when OpenMP's library is loaded. While one of these lives it may run anywhere, and
 // so may the threads that it starts.
@@ -112,9 +88,9 @@ struct Path {
   Times synthesis, analysis;
 };
 
-class Bench {
+class Bench : Report {
 public:
-  explicit Bench(const Options& options) : options_(options) {}
+  explicit Bench(const Options& options) : Report(options.json), options_(options) {}
 
   int run() {
     open();
@@ -125,31 +101,10 @@ public:
       for (const int lmax : options_.degrees)
         for (const int fields : options_.fields) compare(lmax, fields);
     }
-    document_["passed"] = passed_;
-    if (options_.json)
-      fmt::print("{}\n", document_.dump(2));
-    else if (!passed_)
-      fmt::print("\nA verification FAILED.\n");
-    return passed_ ? 0 : 1;
+    return finish();
   }
 
 private:
-  template <class... Args>
-  void say(fmt::format_string<Args...> format, Args&&... args) {
-    if (options_.json) return;
-    fmt::print(format, std::forward<Args>(args)...);
-    std::fflush(stdout);
-  }
-
-  // Notes a check; prints it, and remembers a failure.
-  bool check(const std::string& what, double error, double allowed) {
-    const bool good = error <= allowed; // NaN fails
-    passed_ = passed_ && good;
-    say("  {:<58} {:8.1e}  (allowed {:.0e}){}\n", what, error, allowed, good ? "" : "  FAILED");
-    document_["checks"].push_back({{"what", what}, {"error", error}, {"allowed", allowed}, {"passed", good}});
-    return good;
-  }
-
   void open() {
     const Unbound unbound;
     threads_ = unsigned(omp_get_max_threads());
@@ -213,19 +168,6 @@ private:
       }
       path.setup = median(times);
     }
-  }
-
-  static std::vector<std::complex<double>> random_coefficients(int lmax, int fields) {
-    SphereCoefficients a(lmax, fields);
-    std::mt19937_64 generator(std::uint64_t(lmax) * 64 + std::uint64_t(fields));
-    std::uniform_real_distribution<double> uniform(-1, 1);
-    for (auto& value : a.values) {
-      const double re = uniform(generator); // one after the other: the order of arguments is not fixed
-      value = {re, uniform(generator)};
-    }
-    for (int f = 0; f < fields; ++f)
-      for (int l = 0; l <= lmax; ++l) a.at(f, l, 0) = a.at(f, l, 0).real();
-    return a.values;
   }
 
   // Without the rings next to the poles: there libsharp's cos theta, rounded to double, costs lmax^2 times that rounding.
@@ -299,7 +241,7 @@ private:
     const double grid_seconds = seconds_since(start);
     prepare(grid, lmax);
     const support::Libsharp rival(grid, lmax);
-    const auto coefficients = random_coefficients(lmax, fields);
+    const auto coefficients = random_coefficients(lmax, fields, 1).values;
     const std::size_t points = grid.points(), count = SphereCoefficients::count(lmax);
     std::vector<double> values(std::size_t(fields) * points);
     std::vector<std::complex<double>> back(coefficients.size());
@@ -392,7 +334,7 @@ private:
     for (int lmax = 127; lmax <= 4096; lmax = lmax == 4095 ? 4096 : 2 * lmax + 1) {
       const SphereGrid grid = make_grid(GridKind::gauss_legendre, lmax);
       prepare(grid, lmax);
-      const auto coefficients = random_coefficients(lmax, 1);
+      const auto coefficients = random_coefficients(lmax, 1, 1).values;
       for (Path& path : paths_) {
         if (!path.transform) continue;
         path.values.assign(grid.points(), 0);
@@ -424,16 +366,7 @@ private:
   unsigned threads_ = 1;
   std::vector<Path> paths_; // the CPU, and Vulkan if there is a device
   std::string no_vulkan_;
-  bool passed_ = true;
-  Json document_;
 };
-
-// Highway's better targets have the lower bits.
-void use_instruction_set(const std::string& name) {
-  static const std::map<std::string, std::int64_t> sets = {
-      {"AVX3", HWY_AVX3}, {"AVX2", HWY_AVX2}, {"SSE4", HWY_SSE4}, {"SSSE3", HWY_SSSE3}};
-  if (!name.empty()) hwy::DisableTargets(sets.at(name) - 1);
-}
 
 // OpenMP reads its environment when it is loaded: bound threads that sleep between calls, or the rival's idle threads
 // would take our time, and its own.

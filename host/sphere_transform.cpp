@@ -30,45 +30,40 @@ void SphereTransform::check(int fields, std::size_t coefficients, std::size_t va
                             coefficients, values));
 }
 
-void SphereTransform::synthesise(int fields, std::span<const std::complex<double>> coefficients,
-                                 std::span<double> values, Monitor& monitor, TransformReport* report) {
-  check(fields, coefficients.size(), values.size());
+template <class Work>
+void SphereTransform::timed(int fields, std::size_t coefficients, std::size_t values, TransformReport* report,
+                            const Work& work) {
+  check(fields, coefficients, values);
   const auto start = Clock::now();
   TransformReport own;
-  if (fields > 0) to_grid(fields, coefficients, values, RingFactor::one, monitor, own);
+  if (fields > 0) work(own);
   own.seconds = seconds_since(start);
   if (report) *report = std::move(own);
 }
 
+void SphereTransform::synthesise(int fields, std::span<const std::complex<double>> coefficients,
+                                 std::span<double> values, Monitor& monitor, TransformReport* report) {
+  timed(fields, coefficients.size(), values.size(), report,
+        [&](TransformReport& own) { to_grid(fields, coefficients, values, RingFactor::one, monitor, own); });
+}
+
 void SphereTransform::analyse(int fields, std::span<const double> values, std::span<std::complex<double>> coefficients,
                               Monitor& monitor, TransformReport* report) {
-  check(fields, coefficients.size(), values.size());
-  const auto start = Clock::now();
-  TransformReport own;
-  if (fields > 0) from_grid(fields, values, coefficients, RingFactor::weight, monitor, own);
-  own.seconds = seconds_since(start);
-  if (report) *report = std::move(own);
+  timed(fields, coefficients.size(), values.size(), report,
+        [&](TransformReport& own) { from_grid(fields, values, coefficients, RingFactor::weight, monitor, own); });
 }
 
 void SphereTransform::synthesise_adjoint(int fields, std::span<const double> values,
                                          std::span<std::complex<double>> coefficients, Monitor& monitor,
                                          TransformReport* report) {
-  check(fields, coefficients.size(), values.size());
-  const auto start = Clock::now();
-  TransformReport own;
-  if (fields > 0) from_grid(fields, values, coefficients, RingFactor::one, monitor, own);
-  own.seconds = seconds_since(start);
-  if (report) *report = std::move(own);
+  timed(fields, coefficients.size(), values.size(), report,
+        [&](TransformReport& own) { from_grid(fields, values, coefficients, RingFactor::one, monitor, own); });
 }
 
 void SphereTransform::analyse_adjoint(int fields, std::span<const std::complex<double>> coefficients,
                                       std::span<double> values, Monitor& monitor, TransformReport* report) {
-  check(fields, coefficients.size(), values.size());
-  const auto start = Clock::now();
-  TransformReport own;
-  if (fields > 0) to_grid(fields, coefficients, values, RingFactor::weight, monitor, own);
-  own.seconds = seconds_since(start);
-  if (report) *report = std::move(own);
+  timed(fields, coefficients.size(), values.size(), report,
+        [&](TransformReport& own) { to_grid(fields, coefficients, values, RingFactor::weight, monitor, own); });
 }
 
 } // namespace cowgpu

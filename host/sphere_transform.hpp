@@ -74,6 +74,8 @@ protected:
 
 private:
   void check(int fields, std::size_t coefficients, std::size_t values) const;
+  template <class Work>
+  void timed(int fields, std::size_t coefficients, std::size_t values, TransformReport* report, const Work& work);
   SphereGrid grid_;
   int lmax_;
 };
