@@ -21,7 +21,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/cpu", {"host", "host/plan", "host/reference"}},
     {"host/gpu", {"host", "host/plan", "engine", "engine/kernels"}},
     {"host/mesh", {"host"}},
-    {"host/io", {"host", "host/map", "host/mesh"}},
+    {"host/io", {"host", "host/map", "host/mesh", "host/spectrum"}},
     {"host/map", {"host", "host/mesh"}},
     {"host/spectrum", {"host", "host/mesh", "host/map", "host/plan", "host/reference"}},
     {"host/report", {"host", "host/mesh", "host/map", "host/io", "host/spectrum"}},

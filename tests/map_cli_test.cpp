@@ -44,7 +44,7 @@ void write_ply_file(const std::string& path, const std::vector<Vec3>& vertices, 
   file.commit();
 }
 
-/// "bad-argument: ...", or "none".
+/// "file-format: ...", or "none".
 std::string fault_of_reading(const std::string& path, const ManifoldSurface& surface) {
   try {
     read_map(path, surface);
@@ -244,15 +244,15 @@ TEST_CASE("a file is read as a map only of the mesh it belongs to", "[map-cli]")
   write_ply_file(path, positions, surface.faces());
   CHECK(read_map(path, surface).positions == positions);
 
-  CHECK_THAT(fault_of_reading(path, manifold(test::icosphere(2))), StartsWith("bad-argument: ") && Contains("vertices"));
+  CHECK_THAT(fault_of_reading(path, manifold(test::icosphere(2))), StartsWith("file-format: ") && Contains("vertices"));
   CHECK_THAT(fault_of_reading(folder / "none.ply", surface), StartsWith("cannot-read: "));
   std::vector<Face> faces = surface.faces();
   std::swap(faces[3], faces[4]);
   write_ply_file(path, positions, faces);
-  CHECK_THAT(fault_of_reading(path, surface), StartsWith("bad-argument: face 3 of "));
+  CHECK_THAT(fault_of_reading(path, surface), StartsWith("file-format: face 3 of "));
   faces.pop_back();
   write_ply_file(path, positions, faces);
-  CHECK_THAT(fault_of_reading(path, surface), StartsWith("bad-argument: ") && Contains("79 faces"));
+  CHECK_THAT(fault_of_reading(path, surface), StartsWith("file-format: ") && Contains("79 faces"));
 
   positions[5] *= 1 + 5e-10;
   write_ply_file(path, positions, surface.faces());
@@ -261,7 +261,7 @@ TEST_CASE("a file is read as a map only of the mesh it belongs to", "[map-cli]")
     positions[5] = length * surface.vertices()[5].normalized();
     write_ply_file(path, positions, surface.faces());
     INFO(length);
-    CHECK_THAT(fault_of_reading(path, surface), StartsWith("bad-argument: vertex 5 of "));
+    CHECK_THAT(fault_of_reading(path, surface), StartsWith("file-format: vertex 5 of "));
   }
 }
 

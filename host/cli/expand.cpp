@@ -18,6 +18,7 @@ struct Options {
   std::string mesh = "builtin:cow";
   std::string of = "mass";
   std::string recipe = "default";
+  std::string map_file;
   bool aliasing = false;
   int lmax = 8;
   std::string origin = "com";
@@ -65,16 +66,6 @@ void check_outputs(const Options& options) {
   for (const std::string& path : options.outputs)
     if (!ends_with(path, ".json") && !ends_with(path, ".csv"))
       throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .json or .csv", path));
-}
-
-ExpansionChoice chosen(const Options& options) {
-  const ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.lmax);
-  for (const std::string& path : options.outputs)
-    if (ends_with(path, ".csv") && !choice.mass)
-      throw Error(
-          Fault::bad_argument,
-          fmt::format("-o {}: a CSV holds the mass multipoles, and --of {} has none; write a .json", path, options.of));
-  return choice;
 }
 
 std::uint64_t all_json_bytes(const ExpansionChoice& choice) {
@@ -128,6 +119,9 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
   Coefficients mass;
   Accuracy accuracy;
   accuracy.how = Verify::none;
+  // First, because maps are what may not be possible.
+  std::vector<SurfaceResult> surfaces = expand_surfaces(choice, options.aliasing, body, *backend, monitor);
+  timings.surfaces = watch.lap();
   if (choice.mass) {
     mass = backend->moments(problem, monitor, &run);
     timings.moments = watch.lap();
@@ -135,8 +129,6 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
     if (accuracy.how != Verify::none) accuracy.agreements.push_back(compare_with_tensors(body, mass));
     timings.verify = watch.lap();
   }
-  std::vector<SurfaceResult> surfaces = expand_surfaces(choice, options.aliasing, body, *backend, monitor);
-  timings.surfaces = watch.lap();
   const Tensors second = tensors(body);
   timings.total = watch.total();
   ExpandResult result{common.command,   utc_now(),   std::move(body),    backend->facts(), options.cut_off,
@@ -148,7 +140,7 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
 void run(const Options& options, Common& common) {
   Stopwatch watch;
   check_outputs(options);
-  const ExpansionChoice choice = chosen(options);
+  const ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.map_file, options.lmax);
   const OriginChoice origin = parse_origin(options.origin);
   // Before long work: a result that cannot be written should fail now.
   std::vector<std::unique_ptr<AtomicFile>> files;
@@ -180,8 +172,8 @@ void run(const Options& options, Common& common) {
   const bool writes_json = options.json || std::any_of(options.outputs.begin(), options.outputs.end(),
                                                        [](const std::string& o) { return ends_with(o, ".json"); });
   if (writes_json && all_json_bytes(choice) > large_json && !common.quiet)
-    say(fmt::format("cowgpu: the JSON will have about {} MB{}\n", all_json_bytes(choice) / 1000000,
-                    choice.maps.empty() ? "; -o FILE.csv is smaller" : ""));
+    say(fmt::format("cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n",
+                    all_json_bytes(choice) / 1000000));
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Sink sink = [&](std::string_view text) {
       check_stop(ConsoleMonitor(ProgressStyle::none));
@@ -230,6 +222,11 @@ void add_expand(CLI::App& app, Common& common) {
           "Of the harmonic map: default, or paper (as Higher multipoles of the cow has it, about the mesh's origin)")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
+  command
+      ->add_option(
+          "--map", options->map_file,
+          "Take the map of --of from FILE.ply, which `cowgpu map MESH -o FILE.ply` wrote, instead of making it")
+      ->type_name("FILE");
   command->add_flag("--aliasing", options->aliasing, "Bound the aliasing of surface expansions, degree by degree");
   command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
       ->capture_default_str();

@@ -2,9 +2,13 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/io/file.hpp"
+#include "host/io/map_file.hpp"
+#include "host/io/sha256.hpp"
 #include "host/map/harmonic.hpp"
 #include "host/map/smooth.hpp"
 #include "host/map/stretch.hpp"
+#include "host/mesh/half_edges.hpp"
 
 #include <fmt/format.h>
 
@@ -30,8 +34,16 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
   result.recipe = paper ? "paper" : "default";
   result.origin_kind = paper ? "mesh" : body.origin_kind;
   result.closest_point = paper;
+  result.name = method;
   const auto start = Clock::now();
-  result.map = make_map(method, paper, surface, monitor);
+  if (choice.map_file.empty())
+    result.map = make_map(method, paper, surface, monitor);
+  else {
+    const std::string bytes = read_file(choice.map_file);
+    result.map = read_map(bytes, choice.map_file, surface);
+    result.map_file = choice.map_file;
+    result.map_sha256 = sha256_hex(std::string_view(bytes));
+  }
   result.map_seconds = seconds_since(start);
   result.quality = judge(surface, result.map, std::max(choice.lmax, 1));
   ExpandSurfaceOptions options;
@@ -47,8 +59,10 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
 
 } // namespace
 
-ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, int lmax) {
+ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, const std::string& map_file,
+                                 int lmax) {
   ExpansionChoice choice;
+  choice.map_file = map_file;
   choice.lmax = lmax;
   choice.paper = recipe == "paper";
   std::array<bool, map_names.size()> wanted{};
@@ -76,6 +90,11 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
         Fault::bad_argument,
         fmt::format("--recipe paper is about the harmonic map, and --of {} does not ask for that; add --of harmonic",
                     of));
+  if (!map_file.empty() && choice.maps.size() != 1)
+    throw Error(Fault::bad_argument,
+                fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
+                            "with --of harmonic, stretch or smooth",
+                            map_file, of, choice.maps.empty() ? "none" : "several"));
   return choice;
 }
 
@@ -91,6 +110,7 @@ std::vector<SurfaceResult> expand_surfaces(const ExpansionChoice& choice, bool e
   std::vector<SurfaceResult> results;
   if (choice.maps.empty()) return results;
   const auto surface = ManifoldSurface::from(body.surface);
+  require_sphere(surface);
   for (const std::string& method : choice.maps)
     results.push_back(expand_over(method, choice, estimate_aliasing, body, surface, backend, monitor));
   return results;

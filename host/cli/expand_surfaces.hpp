@@ -15,18 +15,20 @@ struct ExpansionChoice {
   bool mass = false;
   std::vector<std::string> maps; ///< of "harmonic", "stretch", "smooth", in this order, each once
   bool paper = false;            ///< the harmonic map by the paper's recipe
+  std::string map_file;          ///< a PLY file instead of making the one map, or empty
   int lmax = 0;
 };
 
 /// Reads the list `of` (commas; "all") and `recipe` ("default", "paper"). Throws Error(bad_argument) for a name that is
-/// none, and for the paper's recipe without the harmonic map.
-ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, int lmax);
+/// none, for the paper's recipe without the harmonic map, and for a map file without just one map that it stands for.
+ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, const std::string& map_file,
+                                 int lmax);
 
 /// What the largest of the surface expansions needs, and all results; nothing where none is asked for.
 MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend);
 
-/// Maps and expands, about the body's origin; by the paper's recipe about the mesh's. Throws Error(mesh_edge_manifold,
-/// mesh_vertex_manifold) and what maps and expand_surface() throw.
+/// Maps, or reads the map, and expands, about the body's origin; by the paper's recipe about the mesh's. Throws
+/// Error(mesh_edge_manifold, mesh_vertex_manifold) and what maps, read_map() and expand_surface() throw.
 std::vector<SurfaceResult> expand_surfaces(const ExpansionChoice& choice, bool estimate_aliasing, const Body& body,
                                            Backend& backend, Monitor& monitor);
 

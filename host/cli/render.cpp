@@ -1,54 +1,134 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/order_list.hpp"
+#include "host/cli/surface_source.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/png.hpp"
+#include "host/io/surface_file.hpp"
 #include "host/mesh/topology.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
 
 namespace cowgpu::cli {
 namespace {
 
 struct Options {
-  std::string mesh = "builtin:cow";
+  SurfaceChoice source{"builtin:cow", "", "", -1};
+  std::vector<std::string> orders;
+  std::string fields; // empty: xyz
+  int resolution = 0; // 0: default_resolution()
   std::string output;
   std::vector<std::string> views;
+  int columns = 0; // 0: one row up to four panels, then as many rows as columns
   int width = 1600, height = 1200;
   bool transparent = false;
   bool flat = false;
 };
 
-void run(const Options& options, const Common& common) {
-  if (!options.output.ends_with(".png") || options.output.size() == 4)
-    throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .png", options.output));
+TriangleSurface shown_mesh(const RawMesh& mesh) {
+  require_valid_indices(mesh);
+  TriangleSurface surface;
+  surface.vertices = mesh.vertices;
+  surface.faces = mesh.faces;
+  return surface;
+}
+
+// The bodies to show, one after the other; `orders` as typed.
+std::vector<TriangleSurface> bodies(const Options& options, std::vector<int> orders, Backend& backend,
+                                    Monitor& monitor) {
+  std::vector<TriangleSurface> found;
+  if (orders.empty() && !is_result_file(options.source.input)) {
+    found.push_back(shown_mesh(load_mesh(options.source.input)));
+    return found;
+  }
+  const int largest = orders.empty() ? 0 : std::max(*std::max_element(orders.begin(), orders.end()), 0);
+  const SurfaceSource source = load_surface(options.source, largest, backend, monitor);
+  if (orders.empty()) orders = {source.expansion.coefficients.lmax};
+  for (const int order : orders) {
+    if (order == whole_mesh && !source.body)
+      throw Error(Fault::bad_argument, fmt::format("--order mesh: {} does not hold the mesh; name it with --mesh MESH",
+                                                   options.source.input));
+    if (order == whole_mesh) {
+      found.push_back(shown_mesh(source.body->surface.mesh()));
+      continue;
+    }
+    const int resolution = options.resolution > 0 ? options.resolution : default_resolution(order);
+    check_memory(rebuild_memory(order, resolution, backend), backend, "lower --order or --resolution");
+    found.push_back(reconstruct(source.expansion, parse_fields(options.fields), order,
+                                make_grid(GridKind::clenshaw_curtis, resolution), backend, monitor));
+  }
+  return found;
+}
+
+// One panel for each body and view, all to one scale.
+RenderScene scene_of(const Options& options, std::span<const TriangleSurface> bodies, std::span<const View> views) {
   RenderScene scene;
-  scene.panels.resize(std::max<std::size_t>(options.views.size(), 1));
-  for (std::size_t i = 0; i < options.views.size(); ++i) scene.panels[i].view = parse_view(options.views[i]);
-  scene.columns = int(scene.panels.size());
   scene.panel_width = options.width;
   scene.panel_height = options.height;
   scene.transparent = options.transparent;
-  AtomicFile file(options.output); // before long work: what cannot be written should fail now
-
-  const RawMesh mesh = load_mesh(options.mesh);
-  require_valid_indices(mesh);
-  const std::vector<Vec3> normals = options.flat ? std::vector<Vec3>() : vertex_normals(mesh.vertices, mesh.faces);
   double height = 0;
-  for (RenderPanel& panel : scene.panels) {
-    panel.surfaces.push_back({mesh.vertices, mesh.faces, normals});
-    fit(panel, scene.panel_width, scene.panel_height);
-    height = std::max(height, panel.height);
-  }
+  for (const View& view : views)
+    for (const TriangleSurface& body : bodies) {
+      RenderPanel& panel = scene.panels.emplace_back();
+      panel.view = view;
+      panel.surfaces.push_back({body.vertices, body.faces, body.normals});
+      fit(panel, scene.panel_width, scene.panel_height);
+      height = std::max(height, panel.height);
+    }
   for (RenderPanel& panel : scene.panels) panel.height = height;
+  const int panels = int(scene.panels.size());
+  scene.columns = options.columns > 0                     ? std::min(options.columns, panels)
+                  : bodies.size() > 1 && views.size() > 1 ? int(bodies.size())
+                  : panels <= 4                           ? panels
+                                                          : int(std::ceil(std::sqrt(panels)));
+  return scene;
+}
+
+void run(const Options& given, const Common& common) {
+  Options options = given;
+  if (!options.output.ends_with(".png") || options.output.size() == 4)
+    throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .png", options.output));
+  std::vector<View> views;
+  for (const std::string& view : options.views) views.push_back(parse_view(view));
+  if (views.empty()) views.emplace_back();
+  const std::vector<int> orders = parse_orders(options.orders, true);
+  const bool rebuilt = !orders.empty() || is_result_file(options.source.input);
+  if (!rebuilt && (!options.source.of.empty() || !options.fields.empty() || options.source.lmax >= 0 ||
+                   !options.source.mesh.empty() || options.resolution > 0))
+    throw Error(Fault::bad_argument, "--of, --fields, --lmax, --mesh and --resolution are about bodies rebuilt at an "
+                                     "order; add --order, or leave them out to see the mesh itself");
+  if (options.fields.empty()) options.fields = "xyz";
+  const int largest = orders.empty() ? 0 : std::max(*std::max_element(orders.begin(), orders.end()), 0);
+  if (rebuilt) check_surface_choice(options.source, largest);
+  if (options.resolution > 0 && options.resolution < largest)
+    throw Error(Fault::bad_argument, fmt::format("--resolution {} cannot show order {}; it must be at least the order",
+                                                 options.resolution, largest));
+  AtomicFile file(options.output); // before long work: what cannot be written should fail now
 
   // No Vulkan kernel draws so far: a device is opened only if it is asked for.
   const auto backend = common.device == "auto" ? make_cpu_backend(common.threads) : open_backend(common, nullptr);
   if (backend->facts().type != "cpu" && !common.quiet)
-    say(fmt::format("cowgpu: pictures are made on the CPU; {} is not used\n", backend->facts().name));
+    say(fmt::format("cowgpu: pictures are made on the CPU; {} is {}\n", backend->facts().name,
+                    rebuilt ? "used for transforms alone" : "not used"));
   ConsoleMonitor monitor(common.style());
+  std::vector<TriangleSurface> shown = bodies(options, orders, *backend, monitor);
+  std::size_t triangles = 0;
+  for (TriangleSurface& body : shown) {
+    triangles += body.faces.size();
+    if (options.flat)
+      body.normals.clear();
+    else if (body.normals.empty())
+      body.normals = vertex_normals(body.vertices, body.faces);
+  }
+  const RenderScene scene = scene_of(options, shown, views);
   const auto start = Clock::now();
   const Image image = backend->render(scene, monitor);
   const double seconds = seconds_since(start);
@@ -58,15 +138,19 @@ void run(const Options& options, const Common& common) {
   file.commit();
   if (!common.quiet)
     say(fmt::format("cowgpu: wrote {}: {} x {} pixels, {} triangles, rendered in {:.2f} s on the CPU\n", options.output,
-                    image.width, image.height, mesh.faces.size(), seconds));
+                    image.width, image.height, triangles, seconds));
 }
 
 } // namespace
 
 void add_render(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("render", "A picture of a mesh");
-  command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  CLI::App* command = app.add_subcommand("render", "A picture of a mesh, or of its body rebuilt at some orders");
+  command
+      ->add_option("input", options->source.input,
+                   "A mesh, or FILE.json of `cowgpu expand --of ...`, whose body is rebuilt. " + mesh_help())
+      ->type_name("MESH|COEFFS")
+      ->capture_default_str();
   command->add_option("-o,--output", options->output, "The picture, FILE.png")->type_name("FILE")->required();
   command
       ->add_option(
@@ -76,6 +160,34 @@ void add_render(CLI::App& app, Common& common) {
               "panels side by side, all to one scale")
       ->type_name("VIEW")
       ->allow_extra_args(false);
+  command
+      ->add_option("--order", options->orders,
+                   "Rebuild the body at these orders, such as 7 or 0..7,mesh, where mesh is the body itself: a panel "
+                   "each, all to one scale (of a file: its lmax)")
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--of,--method", options->source.of,
+                   "With --order: the map (stretch, harmonic or smooth), or a file's expansion by name (stretch)")
+      ->type_name("NAME");
+  command->add_option("--fields", options->fields, "With --order: xyz (default), or f: distance and angles")
+      ->check(CLI::IsMember({"xyz", "f"}));
+  command
+      ->add_option(
+          "--lmax", options->source.lmax,
+          fmt::format("With --order: degree of a mesh's expansion (the largest order, {} at least)", default_lmax))
+      ->check(CLI::Range(0, largest_surface_degree))
+      ->type_name("L");
+  command->add_option("--mesh", options->source.mesh, "Of a file: the true body, for --order mesh")->type_name("MESH");
+  command
+      ->add_option("--resolution", options->resolution,
+                   "Vertices of rebuilt bodies lie on 2 N + 1 rings (N: four times the order, 64 at least, 256 at "
+                   "most or the order)")
+      ->check(CLI::Range(1, largest_grid_degree))
+      ->type_name("N");
+  command->add_option("--columns", options->columns, "Panels side by side (up to 4, then a square)")
+      ->check(CLI::Range(1, largest_picture))
+      ->type_name("N");
   command->add_option("--width", options->width, "Pixels of a panel")
       ->check(CLI::Range(1, largest_picture))
       ->capture_default_str();
@@ -85,6 +197,7 @@ void add_render(CLI::App& app, Common& common) {
   command->add_flag("--transparent", options->transparent, "No background");
   command->add_flag("--flat", options->flat, "Show the triangles: no smooth shading");
   add_common_options(*command, common);
+  command->footer("Example: cowgpu render benchmark --order 0..7,mesh --width 400 --height 300 -o cow.png");
   command->callback([options, &common] { run(*options, common); });
 }
 

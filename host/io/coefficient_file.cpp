@@ -41,6 +41,20 @@ std::vector<std::string> columns_of(int fields) {
   return columns;
 }
 
+// The names of the fields in the CSV of `cowgpu expand`, whose columns are l,m,re,im or l,m and NAME_re,NAME_im of each;
+// nothing for other columns.
+std::vector<std::string> expanded_fields(const std::vector<std::string>& columns) {
+  if (columns == std::vector<std::string>{"l", "m", "re", "im"}) return {"mass"};
+  std::vector<std::string> names;
+  if (columns.size() < 4 || columns.size() % 2 != 0 || columns[0] != "l" || columns[1] != "m") return {};
+  for (std::size_t i = 2; i < columns.size(); i += 2) {
+    const std::string& re = columns[i];
+    if (re.size() < 4 || !re.ends_with("_re") || columns[i + 1] != re.substr(0, re.size() - 2) + "im") return {};
+    names.push_back(re.substr(0, re.size() - 3));
+  }
+  return names;
+}
+
 // Reads the rows in their fixed order; `take` gets field, l, m and both numbers.
 template <class Take>
 void read_rows(const CsvTable& table, int lmax, int fields, const Take& take) {
@@ -66,22 +80,22 @@ void read_rows(const CsvTable& table, int lmax, int fields, const Take& take) {
 CoefficientFile read_csv_coefficients(const std::filesystem::path& path) {
   const CsvTable table = read_csv(path);
   const int fields = int(table.columns.size() / 2) - 1;
-  const bool complex = table.columns == std::vector<std::string>{"l", "m", "re", "im"};
-  if (!complex && (fields < 1 || fields > most_fields || table.columns != columns_of(fields)))
+  const std::vector<std::string> expanded = expanded_fields(table.columns);
+  if (fields < 1 || fields > most_fields || (expanded.empty() && table.columns != columns_of(fields)))
     table.fail(Fault::file_format, table.header_line,
                fmt::format("coefficients have the columns l,m,C,S (several fields, at most {}: l,m,C_1,S_1,C_2,S_2 and "
-                           "so on) or l,m,re,im",
+                           "so on), or l,m,re,im as `cowgpu expand` writes them",
                            most_fields));
   const int lmax = table.integer("lmax", 0, largest_file_degree);
   CoefficientFile file;
-  if (complex) {
-    if (table.attributes.contains("reference_radius"))
+  if (!expanded.empty()) {
+    if (expanded[0] == "mass" && table.attributes.contains("reference_radius"))
       file.notes.push_back(expansion_note(table.attribute("reference_radius").text));
     // Rows that lie must not make us allocate.
-    if (table.rows() < SphereCoefficients::count(lmax)) read_rows(table, lmax, 1, [](auto...) {});
-    file.coefficients = SphereCoefficients(lmax, 1);
-    file.names = {"mass"};
-    read_rows(table, lmax, 1, [&](int f, int l, int m, double re, double im) {
+    if (table.rows() < SphereCoefficients::count(lmax)) read_rows(table, lmax, fields, [](auto...) {});
+    file.coefficients = SphereCoefficients(lmax, fields);
+    file.names = expanded;
+    read_rows(table, lmax, fields, [&](int f, int l, int m, double re, double im) {
       file.coefficients.at(f, l, m) = {re, im};
     });
     return file;

@@ -10,8 +10,8 @@
 // CSV: lines "# lmax 8", "# normalisation orthonormal", "# phase cs", then the names l,m,C,S (several fields:
 //   l,m,C_1,S_1,C_2,S_2 ...), then a row for each l and m >= 0, sorted by l, then m.
 //
-// Also read: the JSON and the CSV (l,m,re,im) of `cowgpu expand`, as the field with these coefficients. A variable `errors`
-// of pyshtools is left out.
+// Also read: what `cowgpu expand` writes. Of the JSON the expansion `mass`, of the CSV (l,m,re,im, or l,m and NAME_re,NAME_im
+// of several fields) everything, as fields with these coefficients. A variable `errors` of pyshtools is left out.
 #pragma once
 
 #include "host/convention.hpp"

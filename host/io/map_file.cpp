@@ -24,11 +24,11 @@ std::string face_text(const Face& f) {
 void require_faces(const PlyMesh& file, const std::vector<Face>& faces, const std::string& name) {
   const auto advice = "take the file that `cowgpu map` wrote for this very mesh";
   if (file.faces.size() != faces.size())
-    throw Error(Fault::bad_argument, fmt::format("{} has {} faces and the mesh {}: it is no map of this mesh; {}", name,
-                                                 file.faces.size(), faces.size(), advice));
+    throw Error(Fault::file_format, fmt::format("{} has {} faces and the mesh {}: it is no map of this mesh; {}", name,
+                                                file.faces.size(), faces.size(), advice));
   const auto [there, here] = std::mismatch(file.faces.begin(), file.faces.end(), faces.begin());
   if (there != file.faces.end())
-    throw Error(Fault::bad_argument,
+    throw Error(Fault::file_format,
                 fmt::format("face {} of {} is {} and that of the mesh {}: it is no map of this mesh; {}",
                             here - faces.begin(), name, face_text(*there), face_text(*here), advice));
 }
@@ -61,12 +61,15 @@ void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat f
 }
 
 SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface) {
-  const std::string name = path.string();
-  PlyMesh file = read_ply_positions(read_file(path), name);
+  return read_map(read_file(path), path.string(), surface);
+}
+
+SphereMap read_map(std::string_view bytes, const std::string& name, const ManifoldSurface& surface) {
+  PlyMesh file = read_ply_positions(bytes, name);
   const std::size_t vertices = surface.vertices().size();
   if (file.vertices.size() != vertices)
-    throw Error(Fault::bad_argument, fmt::format("{} has {} vertices and the mesh {}: it is no map of this mesh", name,
-                                                 file.vertices.size(), vertices));
+    throw Error(Fault::file_format, fmt::format("{} has {} vertices and the mesh {}: it is no map of this mesh", name,
+                                                file.vertices.size(), vertices));
   require_faces(file, surface.faces(), name);
 
   std::vector<bool> used(vertices);
@@ -82,7 +85,7 @@ SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& sur
     const double length = file.vertices[v].stableNorm();
     if (!(std::abs(length - 1) <= unit_tolerance))
       throw Error(
-          Fault::bad_argument,
+          Fault::file_format,
           fmt::format("vertex {} of {} has length {:.12g}: a map's vertices lie on the unit sphere to {:.0e}, as "
                       "doubles hold them and floats do not",
                       v, name, length, unit_tolerance));

@@ -130,7 +130,7 @@ void write_json(const ExpandResult& result, const Sink& sink) {
   if (result.has_mass) write_mass(result, sink);
   bool first = !result.has_mass;
   for (const SurfaceResult& surface : result.surfaces) {
-    sink((first ? "\"" : ",\n \"") + surface.map.method + "\": ");
+    sink((first ? "\"" : ",\n \"") + surface.name + "\": ");
     write_surface_json(surface, sink);
     first = false;
   }

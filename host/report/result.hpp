@@ -60,7 +60,10 @@ void write_json(const ExpandResult& result, const Sink& sink);
 /// Bytes that write_json() will write for the mass multipoles, to about ten per cent.
 std::uint64_t json_bytes(int lmax);
 
-/// The mass multipoles as CSV: comment lines with conventions and provenance, a header, then l, m, re, im of Q_lm / R^l.
+/// The result as CSV: comment lines with conventions and provenance, a line of column names, then a row for each l and
+/// m >= 0, by l, then m. Mass multipoles alone have the columns l,m,re,im of Q_lm / R^l; with surfaces each expansion has
+/// columns of its own, mass_re,mass_im and stretch_f_r_re,stretch_f_r_im ... stretch_z_im, and the comment lines say
+/// origin, removed means and map of each.
 void write_csv(const ExpandResult& result, const Sink& sink);
 
 } // namespace cowgpu

@@ -12,11 +12,22 @@ using nlohmann::ordered_json;
 
 ordered_json map_json(const SurfaceResult& result) {
   const MapQuality& quality = result.quality;
-  return {{"method", result.map.method},        {"lookup", result.closest_point ? "closest point" : "ray"},
-          {"flipped", quality.flipped.size()},  {"flipped_area", quality.flipped_area},
-          {"flat", quality.flat.size()},        {"degree", quality.degree},
-          {"inside_out", quality.inside_out},   {"unseen", quality.unseen},
-          {"unseen_area", quality.unseen_area}, {"notes", result.map.notes}};
+  ordered_json map = {{"method", result.map.method}};
+  if (!result.map_file.empty()) {
+    map["file"] = result.map_file;
+    map["sha256"] = result.map_sha256;
+  }
+  const ordered_json worth = {{"lookup", result.closest_point ? "closest point" : "ray"},
+                              {"flipped", quality.flipped.size()},
+                              {"flipped_area", quality.flipped_area},
+                              {"flat", quality.flat.size()},
+                              {"degree", quality.degree},
+                              {"inside_out", quality.inside_out},
+                              {"unseen", quality.unseen},
+                              {"unseen_area", quality.unseen_area},
+                              {"notes", result.map.notes}};
+  map.update(worth);
+  return map;
 }
 
 ordered_json aliasing_json(const ExpandSurfaceReport& report) {

@@ -13,9 +13,11 @@
 namespace cowgpu {
 
 struct SurfaceResult {
+  std::string name; ///< key among the expansions: "harmonic", "stretch" or "smooth"
   SphereMap map;
-  std::string recipe;      ///< "default" or "paper"
-  std::string origin_kind; ///< as in Body
+  std::string map_file, map_sha256; ///< the file that the map was read from (method "file"), or empty
+  std::string recipe;               ///< "default" or "paper"
+  std::string origin_kind;          ///< as in Body
   bool closest_point = false;
   SurfaceExpansion expansion;
   ExpandSurfaceReport report;

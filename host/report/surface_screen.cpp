@@ -38,8 +38,9 @@ void write_surface_screen(const SurfaceResult& result, bool beside_paper,
   const SurfaceExpansion& expansion = result.expansion;
   const SphereCoefficients& a = expansion.coefficients;
   const Vec3& o = expansion.origin;
-  sink(fmt::format("\nsurface over the {} map, recipe {}, to degree {}: {} coefficients of each of six fields\n",
-                   result.map.method, result.recipe, a.lmax, SphereCoefficients::count(a.lmax)));
+  sink(fmt::format("\nsurface over the {} map{}, recipe {}, to degree {}: {} coefficients of each of six fields\n",
+                   result.name, result.map_file.empty() ? "" : " of " + result.map_file, result.recipe, a.lmax,
+                   SphereCoefficients::count(a.lmax)));
   for (const std::string& note : result.map.notes) sink("  map: " + note + "\n");
   for (const std::string& sentence : result.quality.sentences) sink("  map: " + sentence + "\n");
   sink(fmt::format("  origin ({:.9g}, {:.9g}, {:.9g}) ({}); grid of {} rings of {} points, looked up {}\n", o.x(),

@@ -78,8 +78,8 @@ double spherical_radius(const SurfaceExpansion& expansion) {
 
 std::string describe_order(const SurfaceExpansion& expansion, SurfaceFields fields, int order) {
   if (order > 0) return fmt::format("degrees 0 to {} of {}", order, fields == SurfaceFields::xyz ? "x, y, z" : "f");
-  std::string text = fmt::format("the sphere of radius {:.6g}, the mean distance from the origin, about it",
-                                 spherical_radius(expansion));
+  std::string text =
+      fmt::format("the sphere of radius f_r00 / sqrt(4 pi) = {:.6g} about the origin", spherical_radius(expansion));
   if (fields == SurfaceFields::xyz) text += "; the expansion of x, y, z is a point at order 0 and starts at order 1";
   return text;
 }
@@ -169,7 +169,7 @@ SurfaceMeasures measure(const SurfaceExpansion& expansion, SurfaceFields fields,
     result.inertia = 0.4 * result.volume * radius * radius * Eigen::Matrix3d::Identity();
     return result;
   }
-  const int degree = (5 * order + 1) / 2;
+  const int degree = std::min((5 * order + 1) / 2, largest_grid_degree);
   const SphereGrid grid =
       make_grid(GridKind::gauss_legendre, fields == SurfaceFields::xyz ? degree : std::max(degree, 64));
   const std::size_t points = grid.points(), length = std::size_t(grid.ring_length);

@@ -69,7 +69,7 @@ struct SurfaceMeasures {
 /// p = P . (dF/dtheta x dF/dphi) / sin theta, the integrals over the sphere of p/3, p P/4 and p P P^T/5 are volume, first
 /// and second moment. For x, y, z these are polynomials of degree 3, 4 and 5 times the order, and the Gauss-Legendre grid
 /// of degree 5/2 order makes them exact up to rounding; for f the same grid, of degree 64 at least, leaves an error of
-/// quadrature. Overlaps count as often as the surface winds round them. Throws what reconstruct() throws.
+/// quadrature, as do orders whose grid would be beyond largest_grid_degree. Overlaps count as often as the surface winds round them. Throws what reconstruct() throws.
 SurfaceMeasures measure(const SurfaceExpansion& expansion, SurfaceFields fields, int order, Backend& backend,
                         Monitor& monitor);
 

@@ -1,0 +1,55 @@
+#include "host/cli/order_list.hpp"
+
+#include "host/error.hpp"
+#include "host/io/shown.hpp"
+#include "host/spectrum/expand_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+namespace cowgpu::cli {
+namespace {
+
+std::optional<int> number(std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > largest_surface_degree)
+    return std::nullopt;
+  return value;
+}
+
+} // namespace
+
+std::vector<int> parse_orders(const std::vector<std::string>& lists, bool mesh_too) {
+  std::vector<int> orders;
+  const auto add = [&](int order) {
+    if (std::find(orders.begin(), orders.end(), order) == orders.end()) orders.push_back(order);
+  };
+  for (const std::string& list : lists) {
+    std::istringstream words(list + ",");
+    for (std::string word; std::getline(words, word, ',');) {
+      if (mesh_too && word == "mesh") {
+        add(whole_mesh);
+        continue;
+      }
+      const std::size_t dots = word.find("..");
+      const auto first = number(std::string_view(word).substr(0, dots));
+      const auto last = dots == std::string::npos ? first : number(std::string_view(word).substr(dots + 2));
+      if (!first || !last || *last < *first)
+        throw Error(Fault::bad_argument,
+                    fmt::format("--order {}: \"{}\" is no order; there are whole numbers from 0 to {}, ranges such as "
+                                "0..7{}, separated by commas",
+                                shown(list), shown(word), largest_surface_degree,
+                                mesh_too ? ", and mesh for the body itself" : ""));
+      for (int order = *first; order <= *last; ++order) add(order);
+    }
+  }
+  return orders;
+}
+
+} // namespace cowgpu::cli

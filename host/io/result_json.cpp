@@ -1,0 +1,90 @@
+#include "host/io/result_json.hpp"
+
+#include "host/error.hpp"
+#include "host/io/file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace cowgpu::result_json {
+
+using nlohmann::json;
+
+namespace {
+
+json parse(const std::string& name, const std::string& bytes) {
+  try {
+    return json::parse(bytes);
+  } catch (const json::parse_error& error) {
+    const auto line =
+        1 + std::count(bytes.begin(), bytes.begin() + std::ptrdiff_t(std::min(error.byte, bytes.size())), '\n');
+    throw Error(Fault::file_syntax, fmt::format("{}:{}: this breaks the grammar of JSON (byte {}{})", name, line,
+                                                error.byte, error.byte > bytes.size() ? ", where the file ends" : ""));
+  } catch (const json::exception&) { // a number beyond a double
+    throw Error(Fault::file_syntax, fmt::format("{}: this JSON holds a number that fits no double", name));
+  }
+}
+
+} // namespace
+
+json read(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  json all = parse(name, read_file(path));
+  if (member(name, all, "schema") != "cowgpu.result.v1")
+    throw Error(
+        Fault::file_format,
+        fmt::format("{}: this JSON is no cowgpu.result.v1; take a file that `cowgpu expand -o FILE.json` wrote", name));
+  return all;
+}
+
+const json& member(const std::string& name, const json& object, const char* key) {
+  if (!object.is_object() || !object.contains(key))
+    throw Error(Fault::file_format,
+                fmt::format("{}: no member '{}' where a result of `cowgpu expand` has one", name, key));
+  return object.at(key);
+}
+
+double number(const std::string& name, const json& object, const char* key) {
+  const json& value = member(name, object, key);
+  if (!value.is_number()) throw Error(Fault::file_format, fmt::format("{}: the member '{}' is no number", name, key));
+  return value.get<double>();
+}
+
+SphereCoefficients coefficients(const std::string& name, const json& expansion, int fields, int largest) {
+  const json& lmax = member(name, expansion, "lmax");
+  const json& rows = member(name, expansion, "coefficients");
+  if (member(name, expansion, "normalisation") != "orthonormal" || member(name, expansion, "condon_shortley") != true)
+    throw Error(Fault::file_format,
+                fmt::format("{}: the coefficients are not orthonormal with the Condon-Shortley phase", name));
+  if (!lmax.is_number_integer() || lmax < 0 || lmax > largest)
+    throw Error(Fault::file_format, fmt::format("{}: lmax is no whole number from 0 to {}", name, largest));
+  if (!rows.is_array() || rows.size() != SphereCoefficients::count(lmax.get<int>()))
+    throw Error(Fault::file_format,
+                fmt::format("{}: {} coefficients do not fit lmax {}, which has {}", name, rows.size(), lmax.get<int>(),
+                            SphereCoefficients::count(lmax.get<int>())));
+  SphereCoefficients result(lmax.get<int>(), fields);
+  std::size_t at = 0;
+  for (int l = 0; l <= result.lmax; ++l)
+    for (int m = 0; m <= l; ++m, ++at) {
+      const json& row = rows[at];
+      const std::size_t width = 2 + 2 * std::size_t(fields);
+      if (!row.is_array() || row.size() != width || row[0] != l || row[1] != m ||
+          !std::all_of(row.begin(), row.end(), [](const json& value) { return value.is_number(); }))
+        throw Error(Fault::file_syntax,
+                    fmt::format("{}: coefficient {} is not [{}, {}, and {} numbers]", name, at, l, m, 2 * fields));
+      for (int f = 0; f < fields; ++f) {
+        const std::size_t column = 2 + 2 * std::size_t(f);
+        result.at(f, l, m) = {row[column].get<double>(), row[column + 1].get<double>()};
+        if (m == 0 && result.at(f, l, m).imag() != 0)
+          throw Error(Fault::file_syntax,
+                      fmt::format("{}: coefficient {} of order 0 has an imaginary part, and that of a real field has "
+                                  "none",
+                                  name, at));
+      }
+    }
+  return result;
+}
+
+} // namespace cowgpu::result_json

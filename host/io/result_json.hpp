@@ -1,0 +1,28 @@
+// Parts of result files (data/schemas/cowgpu.result.v1.json) that the readers of expansions share.
+#pragma once
+
+#include "host/sphere_coefficients.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace cowgpu::result_json {
+
+/// The file's document. Throws Error(cannot_read, too_large), file_syntax where it is no JSON, file_format where it is
+/// another document than a cowgpu.result.v1.
+nlohmann::json read(const std::filesystem::path& path);
+
+/// A member of an object; `name` is the file's. Throws Error(file_format) where there is none.
+const nlohmann::json& member(const std::string& name, const nlohmann::json& object, const char* key);
+
+/// A member that is a number. Throws Error(file_format).
+double number(const std::string& name, const nlohmann::json& object, const char* key);
+
+/// The members `lmax` and `coefficients` of an expansion: rows [l, m, re, im of each field] by l, then m. Allocates only
+/// what there are rows for. Throws Error(file_format) where lmax is none, above `largest` or not that of the rows, or
+/// where the coefficients are not orthonormal with the Condon-Shortley phase; file_syntax for a row that is wrong.
+SphereCoefficients coefficients(const std::string& name, const nlohmann::json& expansion, int fields, int largest);
+
+} // namespace cowgpu::result_json

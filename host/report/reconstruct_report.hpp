@@ -1,0 +1,50 @@
+// A body at several orders, ready to be shown.
+#pragma once
+
+#include "host/mesh/body.hpp"
+#include "host/report/result.hpp"
+#include "host/spectrum/reconstruct.hpp"
+#include "host/spectrum/surface_distance.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cowgpu {
+
+/// The body of one order.
+struct RebuiltOrder {
+  int order = 0;
+  SurfaceMeasures measures;
+  std::size_t vertices = 0, faces = 0;
+  int resolution = 0;                      ///< degree of the Clenshaw-Curtis grid of its vertices
+  std::optional<SurfaceDistance> distance; ///< forth: from it to the mesh; where the mesh is known
+  std::string output;                      ///< the file written, or empty
+  double seconds = 0;                      ///< wall time, its distance and file included
+};
+
+/// Result of `reconstruct`.
+struct ReconstructReport {
+  std::vector<std::string> command; ///< as typed
+  std::string created;              ///< UTC, ISO 8601
+  std::string input;                ///< a mesh's name, or a result file
+  bool from_file = false;
+  DeviceFacts device;
+  std::string name, recipe, map_method; ///< of the expansion
+  std::string mesh, mesh_hash;          ///< of what was expanded
+  const SurfaceExpansion* expansion = nullptr;
+  SurfaceFields fields = SurfaceFields::xyz;
+  std::optional<Body> body; ///< where the mesh is known
+  std::size_t samples = 0;  ///< points of each surface that distances are taken from
+  std::vector<RebuiltOrder> orders;
+  std::vector<std::string> notes;
+  double source_seconds = 0, total_seconds = 0; ///< reading, mapping and expanding; all
+};
+
+/// For people: what was rebuilt from what, then a table by order.
+void write_screen(const ReconstructReport& report, const Sink& sink);
+
+/// As JSON after data/schemas/cowgpu.reconstruct.v1.json; what is not finite is null.
+void write_json(const ReconstructReport& report, const Sink& sink);
+
+} // namespace cowgpu
