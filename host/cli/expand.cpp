@@ -230,7 +230,8 @@ void add_expand(CLI::App& app, Common& common) {
           "Of the harmonic map: default, or paper (as Higher multipoles of the cow has it, about the mesh's origin)")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
-  command->add_flag("--aliasing", options->aliasing, "Bound the aliasing of surface expansions, degree by degree");
+  command->add_flag("--aliasing", options->aliasing,
+                    "Estimate the aliasing of surface expansions, degree by degree (the paper's recipe always does)");
   command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
       ->capture_default_str();
   command->add_option("--density", options->density, "Mass per cubed length unit of the mesh")->capture_default_str();
