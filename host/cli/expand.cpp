@@ -227,7 +227,8 @@ void add_expand(CLI::App& app, Common& common) {
           "--map", options->map_file,
           "Take the map of --of from FILE.ply, which `cowgpu map MESH -o FILE.ply` wrote, instead of making it")
       ->type_name("FILE");
-  command->add_flag("--aliasing", options->aliasing, "Bound the aliasing of surface expansions, degree by degree");
+  command->add_flag("--aliasing", options->aliasing,
+                    "Estimate the aliasing of surface expansions, degree by degree (the paper's recipe always does)");
   command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
       ->capture_default_str();
   command->add_option("--density", options->density, "Mass per cubed length unit of the mesh")->capture_default_str();

@@ -1,4 +1,3 @@
-#include "host/io/mesh_source.hpp"
 #include "host/report/result.hpp"
 
 #include <fmt/format.h>
@@ -103,9 +102,7 @@ void write_screen(const ExpandResult& result, const Sink& sink) {
   sink("\ntensors about the origin\n");
   write_matrix("quadrupole 3 x x - r^2", result.tensors.quadrupole, sink);
   write_matrix("inertia r^2 - x x", result.tensors.inertia, sink);
-  for (const SurfaceResult& surface : result.surfaces)
-    write_surface_screen(surface, surface.recipe == "paper" && result.body.surface.mesh().sha256 == benchmark_sha256,
-                         sink);
+  for (const SurfaceResult& surface : result.surfaces) write_surface_screen(surface, sink);
 }
 
 } // namespace cowgpu

@@ -2,6 +2,7 @@
 
 #include "host/io/number.hpp"
 #include "host/report/json_parts.hpp"
+#include "host/spectrum/paper_harmonic.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -30,10 +31,28 @@ ordered_json map_json(const SurfaceResult& result) {
   return map;
 }
 
-ordered_json aliasing_json(const ExpandSurfaceReport& report) {
+ordered_json rows_json(const std::vector<std::array<double, 6>>& degrees) {
   ordered_json rows = ordered_json::array();
-  for (const auto& row : report.aliasing) rows.push_back(row);
+  for (const auto& row : degrees) rows.push_back(row);
   return rows;
+}
+
+ordered_json paper_json(const SurfaceResult& result) {
+  ordered_json rows = ordered_json::array();
+  for (const PaperRow& row : paper_harmonic_table()) {
+    ordered_json line = {row.l, row.m};
+    for (const std::complex<double>& value : row.values) {
+      line.push_back(value.real());
+      line.push_back(value.imag());
+    }
+    rows.push_back(std::move(line));
+  }
+  const auto within = converged_within(result);
+  return {{"fields", {"f_r", "f_dtheta", "f_dphi"}},
+          {"coefficients", rows},
+          {"misfits", paper_misfits(result.expansion)},
+          {"distances", paper_distances(result.expansion)},
+          {"converged_within", {within[0], within[1], within[2]}}};
 }
 
 } // namespace
@@ -46,7 +65,7 @@ void write_surface_json(const SurfaceResult& result, const std::function<void(st
   const SurfaceExpansion& expansion = result.expansion;
   const SphereCoefficients& a = expansion.coefficients;
   const Vec3& o = expansion.origin;
-  const ordered_json head = {
+  ordered_json head = {
       {"lmax", a.lmax},
       {"origin", {o.x(), o.y(), o.z()}},
       {"origin_kind", result.origin_kind},
@@ -60,11 +79,13 @@ void write_surface_json(const SurfaceResult& result, const std::function<void(st
       {"dphi", expansion.signed_dphi ? "signed" : "absolute"},
       {"map", map_json(result)},
       {"grid", {{"kind", "gl"}, {"rings", result.report.rings}, {"ring_length", result.report.ring_length}}},
-      {"aliasing", aliasing_json(result.report)},
+      {"aliasing", rows_json(result.report.aliasing)},
+      {"truncation", rows_json(result.report.truncation)},
       {"timings",
        {{"map", result.map_seconds},
         {"sample", result.report.sample_seconds},
         {"analyse", result.report.analyse_seconds}}}};
+  if (result.beside_paper) head["paper"] = paper_json(result);
   sink(json_members(head) + ",\n \"coefficients\": [");
   std::string text;
   for (int l = 0; l <= a.lmax; ++l)

@@ -13,7 +13,19 @@ std::string coefficient_text(std::complex<double> value) {
   return fmt::format("{:+.4f}{:+.4f}i", value.real(), value.imag());
 }
 
-void write_beside_paper(const SurfaceExpansion& expansion, const std::function<void(std::string_view)>& sink) {
+std::string fields_text(const std::array<double, 6>& values, std::size_t fields) {
+  std::string text;
+  for (std::size_t f = 0; f < fields; ++f)
+    text += fmt::format("{}{} {:.1e}", f == 0 ? "" : ", ", surface_field_names[f], values[f]);
+  return text;
+}
+
+std::string columns_text(const std::array<double, 3>& values) {
+  return fmt::format("f_r {:.4f}, f_dtheta {:.4f}, f_dphi {:.4f}", values[0], values[1], values[2]);
+}
+
+void write_beside_paper(const SurfaceResult& result, const std::function<void(std::string_view)>& sink) {
+  const SurfaceExpansion& expansion = result.expansion;
   sink(
       "\nbeside the paper's table (Higher multipoles of the cow, harmonic map; the means of the angles are dropped)\n");
   sink(fmt::format("  {:>2} {:>2}", "l", "m"));
@@ -26,15 +38,37 @@ void write_beside_paper(const SurfaceExpansion& expansion, const std::function<v
                           coefficient_text(row.values[std::size_t(f)]));
     sink(line + "\n");
   }
-  const auto misfits = paper_misfits(expansion);
-  sink(fmt::format("misfit sqrt(sum |c - t|^2 / sum |t|^2), l >= 1: f_r {:.4f}, f_dtheta {:.4f}, f_dphi {:.4f}\n",
-                   misfits[0], misfits[1], misfits[2]));
+  sink("misfit sqrt(sum |c - t|^2 / sum |t|^2), l >= 1: " + columns_text(paper_misfits(expansion)) + "\n");
+
+  sink(fmt::format(
+      "\nconverged values, and how far the paper's are from them: a grid of half the {} rings moves degrees "
+      "0 to 3 by\nat most {}\n",
+      result.report.rings, fields_text(converged_within(result), 3)));
+  sink(fmt::format("  {:>2} {:>2}", "l", "m"));
+  for (int f = 0; f < 3; ++f) sink(fmt::format("  {:<22} {:<8}", surface_field_names[std::size_t(f)], "paper's"));
+  sink("\n");
+  for (const PaperRow& row : paper_harmonic_table()) {
+    std::string line = fmt::format("  {:>2} {:>2}", row.l, row.m);
+    for (int f = 0; f < 3; ++f) {
+      const std::complex<double> value = expansion.coefficients.at(f, row.l, row.m);
+      line += fmt::format("  {:<22} {:<8.5f}", fmt::format("{:+.6f}{:+.6f}i", value.real(), value.imag()),
+                          std::abs(value - row.values[std::size_t(f)]));
+    }
+    sink(line + "\n");
+  }
+  sink("the paper's largest distance: " + columns_text(paper_distances(expansion)) + "\n");
 }
 
 } // namespace
 
-void write_surface_screen(const SurfaceResult& result, bool beside_paper,
-                          const std::function<void(std::string_view)>& sink) {
+std::array<double, 6> converged_within(const SurfaceResult& result) {
+  std::array<double, 6> most{};
+  for (std::size_t l = 0; l < std::min<std::size_t>(4, result.report.aliasing.size()); ++l)
+    for (std::size_t f = 0; f < most.size(); ++f) most[f] = std::max(most[f], result.report.aliasing[l][f]);
+  return most;
+}
+
+void write_surface_screen(const SurfaceResult& result, const std::function<void(std::string_view)>& sink) {
   const SurfaceExpansion& expansion = result.expansion;
   const SphereCoefficients& a = expansion.coefficients;
   const Vec3& o = expansion.origin;
@@ -50,12 +84,11 @@ void write_surface_screen(const SurfaceResult& result, bool beside_paper,
                    result.report.sample_seconds, result.report.analyse_seconds));
   sink(fmt::format("  means removed: f_dtheta {:.9g}, f_dphi {:.9g} radians; f_dphi is {}\n", expansion.mean_dtheta,
                    expansion.mean_dphi, expansion.signed_dphi ? "signed" : "absolute"));
-  if (!result.report.aliasing.empty()) {
-    const auto& top = result.report.aliasing.back();
-    sink(fmt::format("  aliasing, bounded by a grid of half the rings, at degree {}: f_r {:.1e}, x {:.1e}, y {:.1e}, "
-                     "z {:.1e}\n",
-                     a.lmax, top[0], top[3], top[4], top[5]));
-  }
+  sink(fmt::format("  left above degree {} (root mean square): {}\n", a.lmax,
+                   fields_text(result.report.truncation.back(), 6)));
+  if (!result.report.aliasing.empty())
+    sink(fmt::format("  aliasing at degree {}, as a grid of half the rings shows it: {}\n", a.lmax,
+                     fields_text(result.report.aliasing.back(), 6)));
   std::string head = fmt::format("  {:>2} {:>2}", "l", "m");
   for (const char* field : surface_field_names) head += fmt::format("  {:<16}", field);
   sink(head + "\n");
@@ -65,7 +98,7 @@ void write_surface_screen(const SurfaceResult& result, bool beside_paper,
       for (int f = 0; f < a.fields; ++f) line += fmt::format("  {:<16}", coefficient_text(a.at(f, l, m)));
       sink(line + "\n");
     }
-  if (beside_paper && a.lmax >= 3) write_beside_paper(expansion, sink);
+  if (result.beside_paper) write_beside_paper(result, sink);
 }
 
 } // namespace cowgpu

@@ -4,9 +4,12 @@
 #include "host/error.hpp"
 #include "host/map/closest_point.hpp"
 #include "host/map/sample_fields.hpp"
+#include "host/parallel.hpp"
+#include "host/spectrum/power.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -33,30 +36,64 @@ double wrapped(double angle) {
   return angle;
 }
 
-// [field][ring][longitude] of all six, from x, y, z.
-std::vector<double> surface_fields(const std::vector<double>& positions, const SphereGrid& grid,
-                                   const ExpandSurfaceOptions& options) {
+// All six fields on a grid, [field][ring][longitude], and the integral over the sphere of each squared.
+struct GridFields {
+  std::vector<double> values;
+  std::array<double, fields> squares{};
+};
+
+GridFields surface_fields(const std::vector<double>& positions, const SphereGrid& grid,
+                          const ExpandSurfaceOptions& options) {
   const std::size_t n = grid.points(), length = std::size_t(grid.ring_length);
-  std::vector<double> values(fields * n);
-  std::copy(positions.begin(), positions.end(), values.begin() + std::ptrdiff_t(3 * n));
-  for (std::size_t p = 0; p < n; ++p) {
-    const Vec3 from_origin = Vec3(positions[p], positions[n + p], positions[2 * n + p]) - options.origin;
-    const double r = from_origin.norm();
-    values[p] = r;
-    if (r == 0) continue;
-    const double theta = std::atan2(std::hypot(from_origin.x(), from_origin.y()), from_origin.z());
-    const double dphi = wrapped(std::atan2(from_origin.y(), from_origin.x()) - grid.phi(int(p % length)));
-    values[n + p] = theta - grid.theta[p / length];
-    values[2 * n + p] = options.signed_dphi ? dphi : std::abs(dphi);
+  GridFields result{std::vector<double>(fields * n), {}};
+  std::vector<std::array<double, fields>> ring_squares(std::size_t(grid.rings));
+  parallel_for(0, std::size_t(grid.rings), [&](std::size_t ring, unsigned) {
+    std::array<double, fields> squares{};
+    for (std::size_t j = 0; j < length; ++j) {
+      const std::size_t p = ring * length + j;
+      const Vec3 at(positions[p], positions[n + p], positions[2 * n + p]), from_origin = at - options.origin;
+      std::array<double, fields> value{from_origin.norm(), 0, 0, at.x(), at.y(), at.z()};
+      if (value[0] > 0) {
+        const double theta = std::atan2(std::hypot(from_origin.x(), from_origin.y()), from_origin.z());
+        const double dphi = wrapped(std::atan2(from_origin.y(), from_origin.x()) - grid.phi(int(j)));
+        value[1] = theta - grid.theta[ring];
+        value[2] = options.signed_dphi ? dphi : std::abs(dphi);
+      }
+      for (std::size_t f = 0; f < fields; ++f) {
+        result.values[f * n + p] = value[f];
+        squares[f] += value[f] * value[f];
+      }
+    }
+    ring_squares[ring] = squares;
+  });
+  for (std::size_t ring = 0; ring < ring_squares.size(); ++ring)
+    for (std::size_t f = 0; f < fields; ++f)
+      result.squares[f] += grid.weights[ring] * 2 * std::numbers::pi / double(length) * ring_squares[ring][f];
+  return result;
+}
+
+// What the degrees above each leave out, from Parseval's equation.
+std::vector<std::array<double, 6>> truncation_of(const SphereCoefficients& a,
+                                                 const std::array<double, fields>& squares) {
+  std::vector<std::array<double, 6>> rows(std::size_t(a.lmax) + 1);
+  for (int f = 0; f < fields; ++f) {
+    const std::vector<double> s = power(a, f);
+    double above = squares[std::size_t(f)]; // of lmax: the smallest degrees hold most, so that they go first
+    for (const double part : s) above -= part;
+    above = std::max(0.0, above);
+    for (int l = a.lmax; l >= 0; --l) {
+      rows[std::size_t(l)][std::size_t(f)] = std::sqrt(above / (4 * std::numbers::pi));
+      above += s[std::size_t(l)];
+    }
   }
-  return values;
+  return rows;
 }
 
 SphereCoefficients expand_on(const SphereGrid& grid, std::span<const Vec3> vertices, std::span<const Face> faces,
                              const SphereMap& map, const ExpandSurfaceOptions& options, Backend& backend,
                              Monitor& monitor, ExpandSurfaceReport& report) {
   const auto start = Clock::now();
-  std::vector<double> values;
+  GridFields on_grid;
   {
     const SphereSamples samples = options.closest_point ? closest_samples(map.positions, faces, grid, monitor)
                                                         : backend.sample(map.positions, faces, grid, monitor);
@@ -65,12 +102,13 @@ SphereCoefficients expand_on(const SphereGrid& grid, std::span<const Vec3> verti
     report.faces_hit = samples.faces_hit;
     report.flipped_faces = samples.flipped_faces;
     report.folded_points = samples.folded_points;
-    values = surface_fields(sample_positions(samples, faces, vertices), grid, options);
+    on_grid = surface_fields(sample_positions(samples, faces, vertices), grid, options);
   }
   report.sample_seconds = seconds_since(start);
   const auto sampled = Clock::now();
   SphereCoefficients coefficients(options.lmax, fields);
-  backend.sphere_transform(grid, options.lmax)->analyse(fields, values, coefficients.values, monitor);
+  backend.sphere_transform(grid, options.lmax)->analyse(fields, on_grid.values, coefficients.values, monitor);
+  report.truncation = truncation_of(coefficients, on_grid.squares);
   report.analyse_seconds = seconds_since(sampled);
   return coefficients;
 }
@@ -88,6 +126,10 @@ std::vector<std::array<double, 6>> differences(const SphereCoefficients& a, cons
 
 } // namespace
 
+int surface_grid_degree(int lmax) {
+  return std::max(2 * lmax, least_surface_grid_degree);
+}
+
 SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const Face> faces, const SphereMap& map,
                                 const ExpandSurfaceOptions& options, Backend& backend, Monitor& monitor,
                                 ExpandSurfaceReport* report) {
@@ -99,10 +141,11 @@ SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const 
     return expand_on(make_grid(GridKind::gauss_legendre, degree), vertices, faces, map, options, backend, monitor, to);
   };
   SurfaceExpansion expansion;
-  expansion.coefficients = on_grid(2 * options.lmax, found);
+  const int degree = surface_grid_degree(options.lmax);
+  expansion.coefficients = on_grid(degree, found);
   if (options.estimate_aliasing) {
     ExpandSurfaceReport coarse;
-    found.aliasing = differences(expansion.coefficients, on_grid(options.lmax, coarse));
+    found.aliasing = differences(expansion.coefficients, on_grid(degree / 2, coarse));
   }
   expansion.origin = options.origin;
   expansion.signed_dphi = options.signed_dphi;
@@ -117,7 +160,7 @@ SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const 
 }
 
 MemoryNeed expand_surface_memory(std::uint64_t faces, int lmax, const Backend& backend) {
-  const SphereGrid grid = make_grid(GridKind::gauss_legendre, 2 * lmax);
+  const SphereGrid grid = make_grid(GridKind::gauss_legendre, surface_grid_degree(lmax));
   const MemoryNeed sampling = backend.sample_memory(faces, grid);
   const MemoryNeed transform = backend.sphere_transform_memory(grid, lmax, fields);
   const std::uint64_t point = sizeof(double);

@@ -19,12 +19,17 @@ struct ExpandSurfaceOptions {
   /// (Backend::sample).
   bool closest_point = false;
   bool signed_dphi = true; ///< false: expand |f_dphi|, as the paper's table does
-  /// Expand once more on the grid of degree lmax, with a quarter of the points, for ExpandSurfaceReport::aliasing.
+  /// Expand once more on the grid of half the degree, with a quarter of the points, for ExpandSurfaceReport::aliasing.
   bool estimate_aliasing = false;
 };
 
 /// Fields are sampled on a grid of twice the degree.
 inline constexpr int largest_surface_degree = largest_grid_degree / 2;
+
+/// The degree of the grid that a surface is sampled on: 2 lmax, but no less than this. Fields of a mesh are not
+/// band-limited, and on the smallest grids aliasing would decide even the leading coefficients (by 6 % at lmax 3).
+inline constexpr int least_surface_grid_degree = 256;
+int surface_grid_degree(int lmax);
 
 /// What came of an expansion beside the coefficients.
 struct ExpandSurfaceReport {
@@ -36,9 +41,13 @@ struct ExpandSurfaceReport {
   /// [degree][field]: norm sqrt(sum over m = -l ... l of |a_lm - a'_lm|^2), a' from the coarser grid. Fields of a mesh are
   /// not band-limited; this bounds what aliasing leaves in a as long as refining the grid lowers it. Empty if not asked for.
   std::vector<std::array<double, 6>> aliasing;
+  /// [degree l][field]: the root mean square over the sphere of the field less its degrees 0 to l, by Parseval's equation:
+  /// sqrt((integral of f^2 - sum over l' <= l of S_l') / 4 pi), the means of the angles among degree 0. The integral is
+  /// the grid's, so that this is the root mean square at its points; what is below 3e-8 of the whole is rounding.
+  std::vector<std::array<double, 6>> truncation;
 };
 
-/// Samples the map on the Gauss-Legendre grid of degree 2 lmax; interpolates the position F linearly in the triangles;
+/// Samples the map on the Gauss-Legendre grid of surface_grid_degree(lmax); interpolates the position F linearly in the triangles;
 /// forms f_r = |F - origin|, f_dtheta = theta(F - origin) - theta and f_dphi = phi(F - origin) - phi wrapped to (-pi, pi],
 /// x, y, z; removes the mean of the two angles; and analyses all six to lmax. The angles are 0 where F is the origin.
 ///

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cowgpu {
@@ -20,6 +21,11 @@ constexpr PaperRow table[] = {
     {3, 3, {{{-0.0083, -0.0094}, {-0.0272, 0.0286}, {-0.1859, 0.19}}}},
 };
 
+void check_degree(const SurfaceExpansion& expansion) {
+  if (expansion.coefficients.lmax < 3)
+    throw Error(Fault::bad_argument, "the paper's table goes to degree 3: expand to degree 3 at least");
+}
+
 } // namespace
 
 std::span<const PaperRow> paper_harmonic_table() {
@@ -27,8 +33,7 @@ std::span<const PaperRow> paper_harmonic_table() {
 }
 
 std::array<double, 3> paper_misfits(const SurfaceExpansion& expansion) {
-  if (expansion.coefficients.lmax < 3)
-    throw Error(Fault::bad_argument, "the paper's table goes to degree 3: expand to degree 3 at least");
+  check_degree(expansion);
   std::array<double, 3> misfits{};
   for (int f = 0; f < 3; ++f) {
     double difference = 0, size = 0;
@@ -42,6 +47,17 @@ std::array<double, 3> paper_misfits(const SurfaceExpansion& expansion) {
     misfits[std::size_t(f)] = std::sqrt(difference / size);
   }
   return misfits;
+}
+
+std::array<double, 3> paper_distances(const SurfaceExpansion& expansion) {
+  check_degree(expansion);
+  std::array<double, 3> largest{};
+  for (const PaperRow& row : table)
+    for (int f = 0; f < 3; ++f) {
+      double& most = largest[std::size_t(f)];
+      most = std::max(most, std::abs(expansion.coefficients.at(f, row.l, row.m) - row.values[std::size_t(f)]));
+    }
+  return largest;
 }
 
 } // namespace cowgpu

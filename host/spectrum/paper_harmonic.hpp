@@ -23,4 +23,7 @@ std::span<const PaperRow> paper_harmonic_table();
 /// stand for -m too. Throws Error(bad_argument) for an expansion below degree 3.
 std::array<double, 3> paper_misfits(const SurfaceExpansion& expansion);
 
+/// Column by column the largest |c - t| of the table, the monopole of f_r among them. Throws the same.
+std::array<double, 3> paper_distances(const SurfaceExpansion& expansion);
+
 } // namespace cowgpu
