@@ -100,6 +100,7 @@ TEST_CASE("a file of no surface expansion, or a damaged one, is a named error", 
   const std::string path = folder / "e.json";
   const std::string good = file_json(surface_json("stretch"));
   REQUIRE(fault_of_reading(path, good) == "none");
+  CHECK_THAT(fault_of([&] { read_coefficients(path); }), StartsWith("file-format: ") && Contains("no mass moments"));
   CHECK_THAT(fault_of_reading(path, file_json(R"("mass": {"lmax": 0})")),
              StartsWith("file-format: " + path) && Contains("--of stretch -o FILE.json"));
   CHECK_THAT(fault_of_reading(path, file_json("")), StartsWith("file-format: ") && Contains("no expansion"));
