@@ -299,11 +299,63 @@ TEST_CASE("render writes a picture of a mesh", "[cli][render]") {
   CHECK(flat.width == 40);
 }
 
+TEST_CASE("render shows the body at its orders in panels of one scale, from a mesh as from a result file",
+          "[cli][render]") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> size = {"--width", "60", "--height", "45", "--device", "cpu"};
+  const auto render = [&](const std::string& name, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "render");
+    arguments.insert(arguments.end(), size.begin(), size.end());
+    arguments.insert(arguments.end(), {"-o", folder / name});
+    const ProgramRun run = run_program(arguments);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return read_file(folder / name);
+  };
+  const auto picture = [](const std::string& bytes) {
+    bool alpha = false;
+    return read_png(bytes, alpha);
+  };
+  REQUIRE(run_program({"expand", "builtin:cow@1", "--of", "stretch,smooth", "--lmax", "6", "--device", "cpu", "-q",
+                       "-o", folder / "cow.json"})
+              .exit_code == 0);
+  const std::string six = render("six.png", {folder / "cow.json"});
+  CHECK(six == render("mesh.png", {"builtin:cow@1", "--order", "6", "--lmax", "6"}));
+  CHECK(six != render("smooth.png", {folder / "cow.json", "--of", "smooth"}));
+  CHECK(six != render("f.png", {folder / "cow.json", "--fields", "f"}));
+  CHECK(six != render("five.png", {folder / "cow.json", "--order", "5"}));
+
+  const Image row = picture(render("row.png", {folder / "cow.json", "--order", "0,1", "--order", "6"}));
+  CHECK(row.width == 180);
+  CHECK(row.height == 45);
+  const Image square =
+      picture(render("square.png", {folder / "cow.json", "--order", "0..6,mesh", "--mesh", "builtin:cow@1"}));
+  CHECK(square.width == 180);
+  CHECK(square.height == 135);
+  const Image table =
+      picture(render("table.png", {"--order", "3,mesh", "--view", "side", "--view", "top", "--view", "front"}));
+  CHECK(table.width == 120);
+  CHECK(table.height == 135);
+  const Image column = picture(render("column.png", {"--order", "3,mesh", "--columns", "1"}));
+  CHECK(column.width == 60);
+  CHECK(column.height == 90);
+  // The panel of the mesh is the mesh's own picture: the sphere beside it is smaller than the cow is long.
+  const std::string alone = render("alone.png", {"builtin:cow@1"});
+  const Image own = picture(alone), both = picture(render("both.png", {"builtin:cow@1", "--order", "0,mesh"}));
+  CHECK(std::abs(double(coverage(both)) / double(coverage(own)) - 1) > 0.2);
+  double difference = 0;
+  for (int y = 0; y < own.height; ++y)
+    for (int x = 0; x < own.width; ++x)
+      difference = std::max(difference, std::abs(double(own.pixel(x, y)[1]) - double(both.pixel(x + 60, y)[1])));
+  CHECK(difference == 0);
+}
+
 TEST_CASE("render refuses what it cannot do, and writes nothing then", "[cli][render]") {
   const TemporaryFolder folder;
   std::ofstream(folder / "open.off") << "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   std::ofstream(folder / "nan.off") << "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n";
   std::ofstream(folder / "empty.off") << "OFF\n0 0 0\n";
+  std::ofstream(folder / "mass.json") << R"({"schema": "cowgpu.result.v1", "expansions": {"mass": {}}})";
   const std::string png = folder / "x.png";
   struct Case {
     std::vector<std::string> arguments;
@@ -325,6 +377,14 @@ TEST_CASE("render refuses what it cannot do, and writes nothing then", "[cli][re
       {{folder / "empty.off", "-o", png}, 3, "mesh-empty"},
       {{"builtin:box", "-o", folder / "no folder/x.png"}, 5, "cannot-write"},
       {{"builtin:box", "-o", "/dev/full", "-q"}, 2, "must end in .png"},
+      {{"builtin:box", "-o", png, "--order", "-1"}, 2, "--order"},
+      {{"builtin:box", "-o", png, "--order", "0..9999"}, 2, "no order"},
+      {{"builtin:box", "-o", png, "--order", "milk"}, 2, "no order"},
+      {{"builtin:box", "-o", png, "--order", "9", "--lmax", "8"}, 2, "beyond --lmax 8"},
+      {{"builtin:box", "-o", png, "--fields", "f"}, 2, "add --order"},
+      {{"builtin:box", "-o", png, "--of", "stretch"}, 2, "add --order"},
+      {{folder / "mass.json", "-o", png}, 3, "no expansion of a surface"},
+      {{folder / "none.json", "-o", png}, 5, "cannot-read"},
   };
   for (const Case& c : cases) {
     std::vector<std::string> arguments = {"render"};

@@ -140,4 +140,36 @@ for arguments in (
     assert sum(part["triangles"] for part in quality["unseen"]["parts"]) == quality["unseen"]["count"]
 judged["method"] = "guess"
 refuses(sphere_map, judged, "a method that is none")
-print("18 documents and 2 files passed")
+
+reconstruct = load_schema("reconstruct")
+with tempfile.TemporaryDirectory() as folder:
+    coefficients, mapped, table = (os.path.join(folder, name) for name in ("cow.json", "cow.ply", "cow.csv"))
+    subprocess.run([program, "map", "builtin:cow@1", "-o", mapped], capture_output=True, check=True)
+    over = ["builtin:cow@1", "--of", "mass,stretch", "--lmax", "9", "--device", "cpu"]
+    direct = expand(*over, "--json", "-o", coefficients, "-o", table)
+    read = expand(*over, "--map", mapped, "--json")
+    jsonschema.validate(read, schema)
+    assert read["expansions"]["stretch"]["map"]["method"] == "file"
+    assert read["expansions"]["stretch"]["map"]["file"] == mapped
+    assert read["expansions"]["stretch"]["coefficients"] == direct["expansions"]["stretch"]["coefficients"]
+    with open(table, encoding="utf-8") as file:
+        lines = [line.rstrip("\n").split(",") for line in file if not line.startswith("#")]
+    assert lines[0][:6] == ["l", "m", "mass_re", "mass_im", "stretch_f_r_re", "stretch_f_r_im"]
+    want = [m + s[2:] for m, s in zip(*(direct["expansions"][name]["coefficients"] for name in ("mass", "stretch")))]
+    assert [[float(word) for word in line] for line in lines[1:]] == want, "the CSV holds what the JSON holds"
+    for arguments in (
+        ["builtin:cow@1", "--order", "0,3", "--lmax", "9", "--samples", "100"],
+        [coefficients, "--order", "0..2", "--fields", "f"],
+        [coefficients, "--mesh", "builtin:cow@1", "--samples", "100"],
+    ):
+        rebuilt = output_of("reconstruct", *arguments, "--device", "cpu", "--json")
+        jsonschema.validate(rebuilt, reconstruct)
+        known = "--fields" not in arguments
+        assert all((row["distance"] is not None) == known for row in rebuilt["orders"])
+        assert (rebuilt["mesh"] is not None) == known
+        sphere = 4 / 3 * 3.141592653589793 * rebuilt["expansion"]["spherical_radius"] ** 3
+        assert abs(rebuilt["orders"][0]["volume"] - sphere) < 1e-14 * sphere
+    assert [row["order"] for row in rebuilt["orders"]] == list(range(9)), "0 to 8 unless told otherwise"
+    rebuilt["orders"][0]["distance"] = "far"
+    refuses(reconstruct, rebuilt, "a distance in words")
+print("23 documents and 4 files passed")

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <system_error>
@@ -106,6 +107,16 @@ private:
   std::map<int, std::unique_ptr<AtomicFile>> files_;
 };
 
+// Passes on the wish to stop, and keeps quiet about the parts of an order, which are short.
+class QuietMonitor final : public Monitor {
+public:
+  explicit QuietMonitor(const Monitor& outer) : outer_(outer) {}
+  bool stopped() const override { return outer_.stopped(); }
+
+private:
+  const Monitor& outer_;
+};
+
 std::vector<int> chosen_orders(const Options& options) {
   std::vector<int> orders = parse_orders(options.orders);
   std::sort(orders.begin(), orders.end());
@@ -184,13 +195,25 @@ void run(const Options& options, const Common& common) {
   report.notes = std::move(source.notes);
   if (!note.empty()) report.notes.push_back(note);
   report.source_seconds = seconds_since(start);
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    monitor.progress("orders rebuilt", double(i) / double(orders.size()));
-    report.orders.push_back(rebuild(options, report, orders[i], outputs, common.threads, *backend, monitor));
-    if (!report.orders.back().output.empty() && !common.quiet) {
-      monitor.clear();
-      say(fmt::format("cowgpu: wrote {}\n", report.orders.back().output));
+  QuietMonitor quiet(monitor);
+  double done = 0, all = 0; // an order costs about its square, and 64 at least
+  const auto cost = [](int order) { return std::pow(std::max(order, 64), 2); };
+  for (const int order : orders) all += cost(order);
+  try {
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+      check_stop(monitor);
+      monitor.progress("orders rebuilt", done / all);
+      done += cost(orders[i]);
+      report.orders.push_back(rebuild(options, report, orders[i], outputs, common.threads, *backend, quiet));
+      if (!report.orders.back().output.empty() && !common.quiet) {
+        monitor.clear();
+        say(fmt::format("cowgpu: wrote {}\n", report.orders.back().output));
+      }
     }
+  } catch (const Error& error) {
+    if (error.fault() != Fault::interrupted || !outputs.any() || report.orders.empty()) throw;
+    throw Error(Fault::interrupted, fmt::format("interrupted: {} of {} files were written, and no part of another",
+                                                report.orders.size(), orders.size()));
   }
   monitor.clear();
   report.total_seconds = seconds_since(start);
@@ -222,7 +245,7 @@ void add_reconstruct(CLI::App& app, Common& common) {
       ->type_name("NAME");
   command
       ->add_option("--fields", options->fields,
-                   "xyz (far closer to the body), or f: distance and angles about the origin")
+                   "xyz (closer to the body at high orders), or f: distance and angles about the origin")
       ->check(CLI::IsMember({"xyz", "f"}))
       ->capture_default_str();
   command

@@ -68,21 +68,24 @@ std::vector<TriangleSurface> bodies(const Options& options, std::vector<int> ord
   return found;
 }
 
-// One panel for each body and view, all to one scale.
+// One panel for each body and view, all to one scale; bodies of a view keep their places in the panel.
 RenderScene scene_of(const Options& options, std::span<const TriangleSurface> bodies, std::span<const View> views) {
   RenderScene scene;
   scene.panel_width = options.width;
   scene.panel_height = options.height;
   scene.transparent = options.transparent;
   double height = 0;
-  for (const View& view : views)
-    for (const TriangleSurface& body : bodies) {
-      RenderPanel& panel = scene.panels.emplace_back();
-      panel.view = view;
-      panel.surfaces.push_back({body.vertices, body.faces, body.normals});
-      fit(panel, scene.panel_width, scene.panel_height);
-      height = std::max(height, panel.height);
+  for (const View& view : views) {
+    RenderPanel together;
+    together.view = view;
+    for (const TriangleSurface& body : bodies) together.surfaces.push_back({body.vertices, body.faces, body.normals});
+    fit(together, scene.panel_width, scene.panel_height);
+    height = std::max(height, together.height);
+    for (const RenderSurface& surface : together.surfaces) {
+      RenderPanel& panel = scene.panels.emplace_back(together);
+      panel.surfaces = {surface};
     }
+  }
   for (RenderPanel& panel : scene.panels) panel.height = height;
   const int panels = int(scene.panels.size());
   scene.columns = options.columns > 0                     ? std::min(options.columns, panels)
