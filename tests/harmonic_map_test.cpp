@@ -259,6 +259,36 @@ TEST_CASE("the plane is wrapped round the sphere without turning it over", "[moe
   CHECK(double(inverse_stereographic({1e9L, 0}).z()) == Approx(-1));
 }
 
+TEST_CASE("harmonic, polished and smoothed maps stop when asked to, and tell how far they are", "[harmonic][smooth]") {
+  struct Stopper : Monitor {
+    int after = 0, told = 0;
+    mutable int asked = 0;
+    void progress(const char*, double fraction) override {
+      CHECK((fraction >= 0 && fraction <= 1));
+      ++told;
+    }
+    bool stopped() const override { return ++asked > after; }
+  };
+  const auto body = manifold(scaled(icosphere(3), {1, 1, 3}));
+  const std::vector<std::function<void(Monitor&)>> makers = {
+      [&](Monitor& monitor) { (void)harmonic_map(body, {}, monitor); },
+      [&](Monitor& monitor) { (void)harmonic_map(body, at_vertex(0, true), monitor); },
+      [&](Monitor& monitor) { (void)smooth_map(body, {}, monitor); }};
+  for (const auto& make : makers) {
+    Stopper never;
+    never.after = 1 << 30;
+    make(never);
+    CHECK(never.asked >= 4);
+    CHECK(never.told >= 3);
+    for (int after = 0; after < never.asked; ++after) {
+      Stopper stopper;
+      stopper.after = after;
+      CHECK(fault_of([&] { make(stopper); }) == Fault::interrupted);
+      CHECK(stopper.asked == after + 1);
+    }
+  }
+}
+
 TEST_CASE("mean-curvature flow and polish find the same map, the closer the finer the mesh", "[harmonic][smooth]") {
   double before = 0;
   for (int level = 1; level <= 3; ++level) {
