@@ -69,10 +69,11 @@ TEST_CASE("the harmonic map of an icosphere tends to a Moebius map of itself", "
     const auto sphere = manifold(icosphere(level));
     const double off = furthest(harmonic_map(sphere, at_vertex(0)).positions, sphere.vertices());
     UNSCOPED_INFO("level " << level << " off by " << off);
-    if (level > 2) CHECK(off < 0.6 * before);
+    if (level > 3)
+      CHECK(std::log2(before / off) == Approx(1).margin(0.2)); // of the first order: the pole's ring is round
     before = off;
   }
-  CHECK(before < 0.013);
+  CHECK(before < 0.01); // 0.0025
 }
 
 TEST_CASE("the polished and the smoothed map of an icosphere tend to itself", "[harmonic][smooth]") {
