@@ -102,6 +102,7 @@ SphereCoefficients expand_on(const SphereGrid& grid, std::span<const Vec3> verti
     report.faces_hit = samples.faces_hit;
     report.flipped_faces = samples.flipped_faces;
     report.folded_points = samples.folded_points;
+    report.exact_decisions = samples.exact_decisions;
     on_grid = surface_fields(sample_positions(samples, faces, vertices), grid, options);
   }
   report.sample_seconds = seconds_since(start);
