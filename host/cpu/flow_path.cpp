@@ -13,7 +13,7 @@ namespace {
 constexpr double rounding = 1e-13;   // what two ways to the same length may differ by
 constexpr double tie = 1e-11;        // a triangle nearer by so much is an event
 constexpr double apart = 1e-9;       // a contact farther by so much is none
-constexpr double off_surface = 1e-8; // where a flow starts that cannot leave along the normal
+constexpr double off_surface = 1e-7; // where a flow starts that cannot leave along the normal
 // Relative to the distance.
 constexpr double same_point = 1e-6;
 
@@ -281,7 +281,7 @@ void FlowPath::slide(const View& view) {
     double error = 0, allowed = 0;
     for (int tries = 0;; ++tries) {
       place = slide_step(x_, view.velocity, step, &error);
-      allowed = tolerance_ * step + rounding * scale_;
+      allowed = tolerance_ * step + std::clamp(1e-9 * view.distance, 1e-15 * scale_, rounding * scale_);
       if (error <= allowed || step < apart * view.distance || tries == 30) break;
       step *= std::max(0.1, 0.9 * std::pow(allowed / error, 0.25));
     }
@@ -318,7 +318,7 @@ bool FlowPath::come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32
   for (const std::uint32_t f : order) {
     const Vec3 way = feet[f].point - place;
     const Vec3 out = feet[f].distance > rounding * scale_ ? Vec3(way / feet[f].distance) : field_.normal(f);
-    if (field_.winding_number(feet[f].point + off_surface * scale_ * out) > 0) continue;
+    if (field_.winding_number(feet[f].point + off_surface * scale_ * out) != 0) continue;
     foot = feet[f].point;
     normal = out;
     face = f;
@@ -335,7 +335,7 @@ void FlowPath::leave(const Vec3& start, const Vec3& given, std::uint32_t warm) {
   const bool on_surface = normal.squaredNorm() > 0 || near.distance <= rounding * scale_;
   if (on_surface && normal.squaredNorm() == 0) normal = field_.normal(warm_);
   const Vec3 off = start + off_surface * scale_ * normal;
-  if (field_.winding_number(on_surface ? off : start) > 0) {
+  if (field_.winding_number(on_surface ? off : start) != 0) {
     // Inside, the gradient of the negative distance leads straight to the nearest way out. Sheets of the surface inside
     // the body, where it overlaps itself, are none.
     end_.flags |= flow_inside;
