@@ -18,7 +18,7 @@ constexpr std::size_t batch = 512;
 class CpuFlow : public DistanceFlow {
 public:
   CpuFlow(std::span<const Vec3> vertices, std::span<const Face> faces, unsigned threads)
-      : field_(vertices, faces), threads_(threads) {
+      : surface_(vertices, faces), threads_(threads) {
   }
 
   FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
@@ -29,7 +29,7 @@ private:
                        cpu::FlowTrace* trace) const;
   cpu::FlowEnd backward(const Vec3& start, const FlowOptions& options, std::uint32_t warm, cpu::FlowTrace* trace) const;
 
-  plan::TriangleField field_;
+  cpu::FlowSurface surface_;
   unsigned threads_;
 };
 
@@ -50,10 +50,10 @@ void check(std::span<const Vec3> starts, std::span<const Vec3> normals, const Fl
 
 cpu::FlowEnd CpuFlow::forward(const Vec3& start, const Vec3& normal, const FlowOptions& options, std::uint32_t warm,
                               cpu::FlowTrace* trace) const {
-  cpu::FlowEnd end = cpu::FlowPath(field_, options.time, options.tolerance, trace).run(start, normal, warm);
+  cpu::FlowEnd end = cpu::FlowPath(surface_, options.time, options.tolerance, trace).run(start, normal, warm);
   if (!(end.flags & flow_unfinished)) return end;
   const cpu::FlowEnd first = end;
-  end = cpu::FlowPath(field_, options.time, std::max(options.tolerance / 100, 1e-13), trace).run(start, normal, warm);
+  end = cpu::FlowPath(surface_, options.time, std::max(options.tolerance / 100, 1e-13), trace).run(start, normal, warm);
   end.flags |= flow_restarted;
   end.queries += first.queries;
   end.events += first.events;
@@ -64,12 +64,12 @@ cpu::FlowEnd CpuFlow::forward(const Vec3& start, const Vec3& normal, const FlowO
 cpu::FlowEnd CpuFlow::backward(const Vec3& start, const FlowOptions& options, std::uint32_t warm,
                                cpu::FlowTrace* trace) const {
   cpu::FlowEnd end;
-  end.face = field_.nearest(start, warm);
+  end.face = surface_.nearest(start, warm);
   end.queries = 1;
   end.position = start;
-  const plan::Foot foot = field_.foot(end.face, start);
+  const cpu::Foot foot = surface_.foot(end.face, start);
   end.distance = foot.distance;
-  if (field_.winding_number(start) > 0) {
+  if (surface_.winding_number(start) > 0) {
     end.flags = flow_inside;
     end.distance = -foot.distance;
   } else if (foot.distance <= options.time) {
@@ -140,8 +140,8 @@ FlowPoints CpuFlow::flow(std::span<const Vec3> starts, std::span<const Vec3> nor
         cpu::FlowTrace* trace = options.streamlines ? &traces[i] : nullptr;
         const Vec3 normal = normals.empty() ? Vec3(Vec3::Zero()) : normals[i];
         const cpu::FlowEnd end = options.backward
-                                     ? backward(starts[i], options, plan::TriangleField::none, trace)
-                                     : forward(starts[i], normal, options, plan::TriangleField::none, trace);
+                                     ? backward(starts[i], options, no_face, trace)
+                                     : forward(starts[i], normal, options, no_face, trace);
         points.positions[i] = end.position;
         points.distances[i] = end.distance;
         points.faces[i] = end.face;

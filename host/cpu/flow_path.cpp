@@ -9,13 +9,16 @@
 namespace cowgpu::cpu {
 namespace {
 
-// Lengths relative to the body's diagonal.
+// Lengths relative to the body's diagonal. Next to the surface, where flows off edges start, they go with the distance.
 constexpr double rounding = 1e-13;   // what two ways to the same length may differ by
 constexpr double tie = 1e-11;        // a triangle nearer by so much is an event
 constexpr double apart = 1e-9;       // a contact farther by so much is none
 constexpr double off_surface = 1e-7; // where a flow starts that cannot leave along the normal
+constexpr double digits = 4e-16;      // what doubles can tell
 // Relative to the distance.
 constexpr double same_point = 1e-6;
+
+constexpr double near_share = 1e3; // a length of 1e-3 diagonals and more is not next to the surface
 
 constexpr int most_rounds = 4000;
 
@@ -43,8 +46,12 @@ double FlowPath::View::active_distance() const {
   return std::isfinite(least) ? least : distance;
 }
 
-FlowPath::FlowPath(const plan::TriangleField& field, double time, double tolerance, FlowTrace* trace)
-    : field_(field), time_(time), tolerance_(tolerance), scale_(field.scale()),
+double FlowPath::small(double length, double distance) const {
+  return std::max(digits * scale_, length * std::min(scale_, near_share * distance));
+}
+
+FlowPath::FlowPath(const FlowSurface& surface, double time, double tolerance, FlowTrace* trace)
+    : surface_(surface), time_(time), tolerance_(tolerance), scale_(surface.diagonal()),
       // A triangle that is nearer only during a step is not seen: closer looks at tighter tolerances.
       longest_(std::clamp(0.5 * std::pow(tolerance / 1e-6, 1.0 / 6), 0.05, 0.5)), trace_(trace) {
 }
@@ -57,7 +64,7 @@ void FlowPath::record() {
 
 std::uint32_t FlowPath::nearest(const Vec3& x, std::uint32_t warm) {
   ++end_.queries;
-  return field_.nearest(x, warm);
+  return surface_.nearest(x, warm);
 }
 
 FlowPath::View FlowPath::look(const Vec3& x) const {
@@ -67,16 +74,16 @@ FlowPath::View FlowPath::look(const Vec3& x) const {
   for (int c = 0; c < contacts_.count; ++c) {
     const auto i = std::size_t(c);
     const Contact& contact = contacts_.list[i];
-    plan::Foot best = field_.foot(contact.faces[0], x);
+    Foot best = surface_.foot(contact.faces[0], x);
     view.faces[i] = contact.faces[0];
     for (int k = 1; k < contact.count; ++k) {
-      const plan::Foot foot = field_.foot(contact.faces[std::size_t(k)], x);
+      const Foot foot = surface_.foot(contact.faces[std::size_t(k)], x);
       if (foot.distance < best.distance) best = foot, view.faces[i] = contact.faces[std::size_t(k)];
     }
     view.points[i] = best.point;
     view.distances[i] = best.distance;
-    view.regions[i] = best.region;
-    view.normals[i] = best.distance > 0 ? Vec3((x - best.point) / best.distance) : field_.normal(view.faces[i]);
+    view.inside[i] = best.inside;
+    view.normals[i] = best.distance > 0 ? Vec3((x - best.point) / best.distance) : surface_.normal(view.faces[i]);
     view.distance = std::min(view.distance, best.distance);
   }
   if (view.count == 1) {
@@ -94,8 +101,7 @@ FlowPath::View FlowPath::look(const Vec3& x) const {
 }
 
 void FlowPath::tidy(View& view) {
-  // Next to the surface, where flows off edges start, all lengths are small.
-  const double far = view.distance + std::min(apart * scale_, 1e-4 * view.distance);
+  const double far = view.distance + small(apart, view.distance);
   const double join = same_point / 10 * view.distance;
   Contacts kept;
   bool changed = false;
@@ -123,7 +129,7 @@ void FlowPath::tidy(View& view) {
     }
     for (int k = 0; k < contact.count; ++k) {
       const std::uint32_t face = contact.faces[std::size_t(k)];
-      if (std::sqrt(field_.distance2(face, x_)) <= view.distances[i] + (far - view.distance) / 10) own.add(face);
+      if (surface_.foot(face, x_).distance <= view.distances[i] + (far - view.distance) / 10) own.add(face);
     }
   }
   if (kept.count == 0) return;
@@ -141,7 +147,7 @@ void FlowPath::restart() {
 
 void FlowPath::take_in(std::uint32_t face, const Vec3& place) {
   const View view = look(place);
-  const Vec3 point = field_.foot(face, place).point;
+  const Vec3 point = surface_.foot(face, place).point;
   ++end_.events;
   for (int c = 0; c < view.count; ++c)
     if ((view.points[std::size_t(c)] - point).norm() < same_point * view.distance) {
@@ -161,11 +167,11 @@ void FlowPath::ray(const Vec3& foot, const Vec3& normal, double distance, std::u
   const double limit = distance + (time_ - t_);
   const double radius =
       std::max(distance, reference::shrinking_ball<double>(
-                             foot, normal, limit, rounding * scale_,
+                             foot, normal, limit, [&](double r) { return small(rounding, r); },
                              [&](const Vec3& centre) {
                                hit = warm; // the last query finds nothing nearer than the one before
                                warm = nearest(centre, warm);
-                               return field_.foot(warm, centre).point;
+                               return surface_.foot(warm, centre).point;
                              },
                              &touched));
   x_ = foot + radius * normal;
@@ -222,9 +228,9 @@ bool FlowPath::straight(const View& from, const Vec3& to) const {
   // Nearest points inside their triangles at both ends are so in between: distances are linear, velocity is constant.
   for (int c = 0; c < from.count; ++c) {
     const auto i = std::size_t(c);
-    if (from.regions[i] != plan::Region::face) return false;
+    if (!from.inside[i]) return false;
     if (contacts_.list[i].count > 1) return false;
-    if (field_.foot(from.faces[i], to).region != plan::Region::face) return false;
+    if (!surface_.foot(from.faces[i], to).inside) return false;
   }
   return true;
 }
@@ -238,9 +244,9 @@ Vec3 FlowPath::advance(const View& from, double step, bool straight) const {
 
 // The step after which `face` is as near as the contacts, by Illinois' rule; `place` then.
 double FlowPath::to_tie(const View& from, std::uint32_t face, double step, double gap, bool straight, Vec3& place) {
-  const auto gap_at = [&](const Vec3& at) { return field_.foot(face, at).distance - look(at).active_distance(); };
+  const auto gap_at = [&](const Vec3& at) { return surface_.foot(face, at).distance - look(at).active_distance(); };
   double low = 0, high = step, low_gap = gap_at(x_), high_gap = gap;
-  if (low_gap <= rounding * 10 * scale_) {
+  if (low_gap <= 10 * small(rounding, from.distance)) {
     place = x_;
     return 0;
   }
@@ -261,7 +267,7 @@ double FlowPath::to_tie(const View& from, std::uint32_t face, double step, doubl
       if (side == -1) low_gap /= 2;
       side = -1;
     }
-    if (std::abs(here) < 1e-14 * scale_) {
+    if (std::abs(here) < small(rounding, from.distance) / 10) {
       high = s;
       break;
     }
@@ -281,35 +287,35 @@ void FlowPath::slide(const View& view) {
     double error = 0, allowed = 0;
     for (int tries = 0;; ++tries) {
       place = slide_step(x_, view.velocity, step, &error);
-      allowed = tolerance_ * step + std::clamp(1e-9 * view.distance, 1e-15 * scale_, rounding * scale_);
+      allowed = tolerance_ * step + small(rounding, view.distance);
       if (error <= allowed || step < apart * view.distance || tries == 30) break;
       step *= std::max(0.1, 0.9 * std::pow(allowed / error, 0.25));
     }
     next = step * std::min(4.0, 0.9 * std::pow(allowed / (error + 1e-30), 0.2));
     balance(place);
   }
-  std::uint32_t nearer = plan::TriangleField::none;
+  std::uint32_t nearer = no_face;
   for (int tries = 0; tries < 12; ++tries) {
     const double distance = look(place).distance;
     const std::uint32_t face = nearest(place, warm_);
-    const double gap = field_.foot(face, place).distance - distance;
-    if (gap >= -std::min(tie * scale_, 1e-6 * distance)) break;
+    const double gap = surface_.foot(face, place).distance - distance;
+    if (gap >= -small(tie, distance)) break;
     nearer = face;
     step = to_tie(view, face, step, gap, line, place);
     if (step == 0) break;
   }
-  if (nearer != plan::TriangleField::none) take_in(nearer, place);
+  if (nearer != no_face) take_in(nearer, place);
   x_ = place;
   t_ += step;
   record();
   idle_ = step < apart * view.distance ? idle_ + 1 : 0;
-  step_ = nearer != plan::TriangleField::none ? std::max(next / 4, same_point * view.distance) : next;
+  step_ = nearer != no_face ? std::max(next / 4, same_point * view.distance) : next;
   warm_ = contacts_.list[0].faces[0];
 }
 
 bool FlowPath::come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32_t& face) const {
-  std::vector<plan::Foot> feet(field_.size());
-  for (std::uint32_t f = 0; f < field_.size(); ++f) feet[f] = field_.foot(f, place);
+  std::vector<Foot> feet(surface_.faces());
+  for (std::uint32_t f = 0; f < surface_.faces(); ++f) feet[f] = surface_.foot(f, place);
   std::vector<std::uint32_t> order(feet.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -317,8 +323,8 @@ bool FlowPath::come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32
   });
   for (const std::uint32_t f : order) {
     const Vec3 way = feet[f].point - place;
-    const Vec3 out = feet[f].distance > rounding * scale_ ? Vec3(way / feet[f].distance) : field_.normal(f);
-    if (field_.winding_number(feet[f].point + off_surface * scale_ * out) != 0) continue;
+    const Vec3 out = feet[f].distance > rounding * scale_ ? Vec3(way / feet[f].distance) : surface_.normal(f);
+    if (surface_.winding_number(feet[f].point + off_surface * scale_ * out) != 0) continue;
     foot = feet[f].point;
     normal = out;
     face = f;
@@ -331,11 +337,11 @@ void FlowPath::leave(const Vec3& start, const Vec3& given, std::uint32_t warm) {
   Vec3 foot = start, normal = given;
   x_ = start;
   warm_ = nearest(start, warm);
-  const plan::Foot near = field_.foot(warm_, start);
+  const Foot near = surface_.foot(warm_, start);
   const bool on_surface = normal.squaredNorm() > 0 || near.distance <= rounding * scale_;
-  if (on_surface && normal.squaredNorm() == 0) normal = field_.normal(warm_);
+  if (on_surface && normal.squaredNorm() == 0) normal = surface_.normal(warm_);
   const Vec3 off = start + off_surface * scale_ * normal;
-  if (field_.winding_number(on_surface ? off : start) != 0) {
+  if (surface_.winding_number(on_surface ? off : start) != 0) {
     // Inside, the gradient of the negative distance leads straight to the nearest way out. Sheets of the surface inside
     // the body, where it overlaps itself, are none.
     end_.flags |= flow_inside;
@@ -364,7 +370,7 @@ void FlowPath::leave(const Vec3& start, const Vec3& given, std::uint32_t warm) {
   // Largest ball that touches here: the flow leaves along the normal if there is one.
   const double least = std::min(10 * off_surface * scale_, time_ - t_);
   const Vec3 centre = foot + least * normal;
-  if (field_.foot(nearest(centre, warm_), centre).distance >= least - rounding * scale_) return ray(foot, normal, 0, warm_);
+  if (surface_.foot(nearest(centre, warm_), centre).distance >= least - rounding * scale_) return ray(foot, normal, 0, warm_);
   const double away = std::min(off_surface * scale_, time_ - t_);
   x_ = foot + away * normal;
   t_ += away;
@@ -408,7 +414,7 @@ FlowEnd FlowPath::run(const Vec3& start, const Vec3& normal, std::uint32_t warm)
   }
   end_.position = x_;
   end_.face = nearest(x_, warm_);
-  end_.distance = field_.foot(end_.face, x_).distance;
+  end_.distance = surface_.foot(end_.face, x_).distance;
   if (inside_) end_.distance = -end_.distance;
   return end_;
 }

@@ -13,7 +13,7 @@
 #pragma once
 
 #include "host/flow.hpp"
-#include "host/plan/triangle_field.hpp"
+#include "host/cpu/flow_surface.hpp"
 
 #include <array>
 
@@ -38,7 +38,7 @@ struct FlowTrace {
 
 class FlowPath {
 public:
-  FlowPath(const plan::TriangleField& field, double time, double tolerance, FlowTrace* trace = nullptr);
+  FlowPath(const FlowSurface& surface, double time, double tolerance, FlowTrace* trace = nullptr);
 
   /// From a place, with `normal` zero, or from a surface point along its normal. `warm`: a face near it, or none.
   FlowEnd run(const Vec3& start, const Vec3& normal, std::uint32_t warm);
@@ -61,7 +61,7 @@ private:
     std::array<Vec3, most_contacts> normals, points;
     std::array<double, most_contacts> distances{}, weights{};
     std::array<std::uint32_t, most_contacts> faces{};
-    std::array<plan::Region, most_contacts> regions{};
+    std::array<bool, most_contacts> inside{};
     Vec3 velocity;
     double distance = 0; ///< the least
     int count = 0;
@@ -69,6 +69,7 @@ private:
     double active_distance() const;
   };
 
+  double small(double length, double distance) const;
   View look(const Vec3& x) const;
   std::uint32_t nearest(const Vec3& x, std::uint32_t warm);
   void tidy(View& view);
@@ -86,7 +87,7 @@ private:
   bool come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32_t& face) const;
   void record();
 
-  const plan::TriangleField& field_;
+  const FlowSurface& surface_;
   const double time_, tolerance_, scale_, longest_;
   FlowTrace* trace_;
   FlowEnd end_;

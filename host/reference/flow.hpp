@@ -95,15 +95,15 @@ Vector<T> closest_on_mesh(std::span<const Eigen::Vector3d> vertices,
 
 /// Radius of the largest ball that touches the plane through q with normal n there and has no other surface point inside,
 /// at most `limit`: R = |p - q|^2 / (2 (p - q) . n) for a point p inside (Ma, Bae and Choi, The Visual Computer 28 (2012)
-/// 7, the shrinking ball). `closest(c)` is the closest surface point to c; `touched`, if the ball touches, that point.
-template <class T, class Closest>
-T shrinking_ball(const Vector<T>& q, const Vector<T>& n, T limit, T slack, const Closest& closest,
-                 Vector<T>* touched = nullptr, int* queries = nullptr) {
+/// 7, the shrinking ball). `closest(c)` is the closest surface point to c; `slack(R)` how deep a point of a ball of radius R
+/// may lie and still count as on it; `touched`, if the ball touches, that point.
+template <class T, class Closest, class Slack>
+T shrinking_ball(const Vector<T>& q, const Vector<T>& n, T limit, const Slack& slack, const Closest& closest,
+                 Vector<T>* touched = nullptr) {
   T radius = limit;
   for (int step = 0; step < 100; ++step) {
     const Vector<T> centre = q + radius * n, p = closest(centre), pq = p - q;
-    if (queries) ++*queries;
-    if ((p - centre).norm() >= radius - slack) break;
+    if ((p - centre).norm() >= radius - slack(radius)) break;
     const T height = pq.dot(n);
     if (!(height > 0)) break;
     const T smaller = pq.squaredNorm() / (2 * height);
