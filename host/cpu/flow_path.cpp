@@ -14,13 +14,13 @@ constexpr double rounding = 1e-13;   // what two ways to the same length may dif
 constexpr double tie = 1e-11;        // a triangle nearer by so much is an event
 constexpr double apart = 1e-9;       // a contact farther by so much is none
 constexpr double off_surface = 1e-7; // where a flow starts that cannot leave along the normal
-constexpr double digits = 4e-16;      // what doubles can tell
+constexpr double digits = 4e-15;      // what doubles can tell
 // Relative to the distance.
 constexpr double same_point = 1e-6;
 
 constexpr double near_share = 1e3; // a length of 1e-3 diagonals and more is not next to the surface
 
-constexpr int most_rounds = 4000;
+constexpr int most_rounds = 2000; // of steps as long as the distance
 
 } // namespace
 
@@ -277,18 +277,18 @@ double FlowPath::to_tie(const View& from, std::uint32_t face, double step, doubl
 }
 
 void FlowPath::slide(const View& view) {
-  const double most = std::min(time_ - t_, longest_ * view.distance);
+  const double most = std::min(time_ - t_, longest_ * view.distance / view.velocity.norm());
   double step = most, next = 0;
   ++end_.steps;
   Vec3 place = x_ + step * view.velocity;
   const bool line = straight(view, place);
   if (!line) {
-    step = std::min(most, step_ > 0 ? step_ : 0.05 * view.distance);
+    step = std::min(most, step_ > 0 ? step_ : most / 10);
     double error = 0, allowed = 0;
     for (int tries = 0;; ++tries) {
       place = slide_step(x_, view.velocity, step, &error);
       allowed = tolerance_ * step + small(rounding, view.distance);
-      if (error <= allowed || step < apart * view.distance || tries == 30) break;
+      if (error <= allowed || step < apart * most || tries == 30) break;
       step *= std::max(0.1, 0.9 * std::pow(allowed / error, 0.25));
     }
     next = step * std::min(4.0, 0.9 * std::pow(allowed / (error + 1e-30), 0.2));
@@ -370,7 +370,7 @@ void FlowPath::leave(const Vec3& start, const Vec3& given, std::uint32_t warm) {
   // Largest ball that touches here: the flow leaves along the normal if there is one.
   const double least = std::min(10 * off_surface * scale_, time_ - t_);
   const Vec3 centre = foot + least * normal;
-  if (surface_.foot(nearest(centre, warm_), centre).distance >= least - rounding * scale_) return ray(foot, normal, 0, warm_);
+  if (surface_.foot(nearest(centre, warm_), centre).distance >= least - small(rounding, least)) return ray(foot, normal, 0, warm_);
   const double away = std::min(off_surface * scale_, time_ - t_);
   x_ = foot + away * normal;
   t_ += away;
@@ -390,7 +390,7 @@ FlowEnd FlowPath::run(const Vec3& start, const Vec3& normal, std::uint32_t warm)
   if (time_ > 0) leave(start, normal, warm);
   else warm_ = nearest(start, warm);
   for (int round = 0; t_ < time_ * (1 - 1e-14); ++round) {
-    if (round == most_rounds) {
+    if (round >= most_rounds / longest_) {
       end_.flags |= flow_unfinished;
       break;
     }
