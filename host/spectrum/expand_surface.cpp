@@ -4,6 +4,7 @@
 #include "host/error.hpp"
 #include "host/map/closest_point.hpp"
 #include "host/map/sample_fields.hpp"
+#include "host/spectrum/surface_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -13,60 +14,23 @@
 namespace cowgpu {
 namespace {
 
-constexpr int fields = 6;
+constexpr int fields = int(surface_field_names.size());
 
-void check(std::span<const Vec3> vertices, const SphereMap& map, const ExpandSurfaceOptions& options) {
+void check(const ExpandSurfaceOptions& options) {
   if (options.lmax < 0 || options.lmax > largest_surface_degree)
     throw Error(Fault::bad_argument,
                 fmt::format("surfaces are expanded to degree 0 to {}, not {}", largest_surface_degree, options.lmax));
   if (!options.origin.allFinite()) throw Error(Fault::bad_argument, "the origin of an expansion must be finite");
-  if (map.positions.size() != vertices.size())
-    throw Error(Fault::bad_argument,
-                fmt::format("the map has {} positions and the mesh {} vertices: it is of another mesh",
-                            map.positions.size(), vertices.size()));
 }
 
-// In (-pi, pi], for differences of two azimuths from [-pi, pi] and [0, 2 pi).
-double wrapped(double angle) {
-  while (angle > std::numbers::pi) angle -= 2 * std::numbers::pi;
-  while (angle <= -std::numbers::pi) angle += 2 * std::numbers::pi;
-  return angle;
-}
-
-// [field][ring][longitude] of all six, from x, y, z.
-std::vector<double> surface_fields(const std::vector<double>& positions, const SphereGrid& grid,
-                                   const ExpandSurfaceOptions& options) {
-  const std::size_t n = grid.points(), length = std::size_t(grid.ring_length);
-  std::vector<double> values(fields * n);
-  std::copy(positions.begin(), positions.end(), values.begin() + std::ptrdiff_t(3 * n));
-  for (std::size_t p = 0; p < n; ++p) {
-    const Vec3 from_origin = Vec3(positions[p], positions[n + p], positions[2 * n + p]) - options.origin;
-    const double r = from_origin.norm();
-    values[p] = r;
-    if (r == 0) continue;
-    const double theta = std::atan2(std::hypot(from_origin.x(), from_origin.y()), from_origin.z());
-    const double dphi = wrapped(std::atan2(from_origin.y(), from_origin.x()) - grid.phi(int(p % length)));
-    values[n + p] = theta - grid.theta[p / length];
-    values[2 * n + p] = options.signed_dphi ? dphi : std::abs(dphi);
-  }
-  return values;
-}
-
-SphereCoefficients expand_on(const SphereGrid& grid, std::span<const Vec3> vertices, std::span<const Face> faces,
-                             const SphereMap& map, const ExpandSurfaceOptions& options, Backend& backend,
-                             Monitor& monitor, ExpandSurfaceReport& report) {
+SphereCoefficients expand_on(const SphereGrid& grid, const SurfaceSampler& sampler, const ExpandSurfaceOptions& options,
+                             Backend& backend, Monitor& monitor, ExpandSurfaceReport& report) {
   const auto start = Clock::now();
-  std::vector<double> values;
-  {
-    const SphereSamples samples = options.closest_point ? closest_samples(map.positions, faces, grid, monitor)
-                                                        : backend.sample(map.positions, faces, grid, monitor);
-    report.rings = samples.rings;
-    report.ring_length = samples.ring_length;
-    report.faces_hit = samples.faces_hit;
-    report.flipped_faces = samples.flipped_faces;
-    report.folded_points = samples.folded_points;
-    values = surface_fields(sample_positions(samples, faces, vertices), grid, options);
-  }
+  report.rings = grid.rings;
+  report.ring_length = grid.ring_length;
+  const std::vector<double> values = sampler(grid, report);
+  if (values.size() != std::size_t(fields) * grid.points())
+    throw Error(Fault::bad_argument, fmt::format("{} values are no six fields on {} points", values.size(), grid.points()));
   report.sample_seconds = seconds_since(start);
   const auto sampled = Clock::now();
   SphereCoefficients coefficients(options.lmax, fields);
@@ -88,15 +52,14 @@ std::vector<std::array<double, 6>> differences(const SphereCoefficients& a, cons
 
 } // namespace
 
-SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const Face> faces, const SphereMap& map,
-                                const ExpandSurfaceOptions& options, Backend& backend, Monitor& monitor,
-                                ExpandSurfaceReport* report) {
-  check(vertices, map, options);
+SurfaceExpansion expand_surface(const SurfaceSampler& sampler, const ExpandSurfaceOptions& options, Backend& backend,
+                                Monitor& monitor, ExpandSurfaceReport* report) {
+  check(options);
   ExpandSurfaceReport own;
   ExpandSurfaceReport& found = report ? *report : own;
   found = {};
   const auto on_grid = [&](int degree, ExpandSurfaceReport& to) {
-    return expand_on(make_grid(GridKind::gauss_legendre, degree), vertices, faces, map, options, backend, monitor, to);
+    return expand_on(make_grid(GridKind::gauss_legendre, degree), sampler, options, backend, monitor, to);
   };
   SurfaceExpansion expansion;
   expansion.coefficients = on_grid(2 * options.lmax, found);
@@ -114,6 +77,25 @@ SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const 
   expansion.mean_dtheta = take_mean(1);
   expansion.mean_dphi = take_mean(2);
   return expansion;
+}
+
+SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const Face> faces, const SphereMap& map,
+                                const ExpandSurfaceOptions& options, Backend& backend, Monitor& monitor,
+                                ExpandSurfaceReport* report) {
+  check(options);
+  if (map.positions.size() != vertices.size())
+    throw Error(Fault::bad_argument,
+                fmt::format("the map has {} positions and the mesh {} vertices: it is of another mesh",
+                            map.positions.size(), vertices.size()));
+  const auto sampler = [&](const SphereGrid& grid, ExpandSurfaceReport& found) {
+    const SphereSamples samples = options.closest_point ? closest_samples(map.positions, faces, grid, monitor)
+                                                        : backend.sample(map.positions, faces, grid, monitor);
+    found.faces_hit = samples.faces_hit;
+    found.flipped_faces = samples.flipped_faces;
+    found.folded_points = samples.folded_points;
+    return surface_fields(sample_positions(samples, faces, vertices), grid, options.origin, options.signed_dphi);
+  };
+  return expand_surface(sampler, options, backend, monitor, report);
 }
 
 MemoryNeed expand_surface_memory(std::uint64_t faces, int lmax, const Backend& backend) {
