@@ -38,12 +38,12 @@ enum FlowFlag : std::uint8_t {
 
 /// One entry a start, in their order.
 struct FlowPoints {
-  std::vector<Vec3> positions;       ///< at the end
-  std::vector<double> distances;     ///< d there, signed
-  std::vector<std::uint32_t> faces;  ///< a nearest face there
-  std::vector<std::uint8_t> flags;   ///< of FlowFlag
-  std::vector<double> slide_times;   ///< of first reaching the medial axis; infinite if never
-  std::vector<Vec3> slide_places;    ///< where that was
+  std::vector<Vec3> positions;        ///< at the end
+  std::vector<double> distances;      ///< d there, signed
+  std::vector<std::uint32_t> faces;   ///< a nearest face there
+  std::vector<std::uint8_t> flags;    ///< of FlowFlag
+  std::vector<double> slide_times;    ///< of first reaching the medial axis; infinite if never
+  std::vector<Vec3> slide_places;     ///< where that was
   std::vector<std::uint32_t> queries; ///< nearest-face queries spent
   /// Path of start i: corners first[i] ... first[i + 1] - 1 of path and path_times. Empty if not asked for.
   std::vector<std::size_t> first;

@@ -18,8 +18,7 @@ constexpr std::size_t batch = 512;
 class CpuFlow : public DistanceFlow {
 public:
   CpuFlow(std::span<const Vec3> vertices, std::span<const Face> faces, unsigned threads)
-      : surface_(vertices, faces), threads_(threads) {
-  }
+      : surface_(vertices, faces), threads_(threads) {}
 
   FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
                   Monitor& monitor, FlowReport* report) const override;
@@ -37,7 +36,8 @@ void check(std::span<const Vec3> starts, std::span<const Vec3> normals, const Fl
   if (!(options.time >= 0) || !std::isfinite(options.time))
     throw Error(Fault::bad_argument, fmt::format("a flow takes a time of 0 or more, not {}", options.time));
   if (!(options.tolerance >= 1e-12) || !(options.tolerance <= 1e-2))
-    throw Error(Fault::bad_argument, fmt::format("the tolerance of a flow is 1e-12 to 1e-2, not {}", options.tolerance));
+    throw Error(Fault::bad_argument,
+                fmt::format("the tolerance of a flow is 1e-12 to 1e-2, not {}", options.tolerance));
   if (!normals.empty() && (normals.size() != starts.size() || options.backward))
     throw Error(Fault::bad_argument, options.backward
                                          ? std::string("a backward flow takes no normals")
@@ -139,9 +139,8 @@ FlowPoints CpuFlow::flow(std::span<const Vec3> starts, std::span<const Vec3> nor
         if (i % 64 == 0) check_stop(monitor);
         cpu::FlowTrace* trace = options.streamlines ? &traces[i] : nullptr;
         const Vec3 normal = normals.empty() ? Vec3(Vec3::Zero()) : normals[i];
-        const cpu::FlowEnd end = options.backward
-                                     ? backward(starts[i], options, no_face, trace)
-                                     : forward(starts[i], normal, options, no_face, trace);
+        const cpu::FlowEnd end = options.backward ? backward(starts[i], options, no_face, trace)
+                                                  : forward(starts[i], normal, options, no_face, trace);
         points.positions[i] = end.position;
         points.distances[i] = end.distance;
         points.faces[i] = end.face;

@@ -14,7 +14,7 @@ constexpr double rounding = 1e-13;   // what two ways to the same length may dif
 constexpr double tie = 1e-11;        // a triangle nearer by so much is an event
 constexpr double apart = 1e-9;       // a contact farther by so much is none
 constexpr double off_surface = 1e-7; // where a flow starts that cannot leave along the normal
-constexpr double digits = 4e-15;      // what doubles can tell
+constexpr double digits = 4e-15;     // what doubles can tell
 // Relative to the distance.
 constexpr double same_point = 1e-6;
 
@@ -53,8 +53,7 @@ double FlowPath::small(double length, double distance) const {
 FlowPath::FlowPath(const FlowSurface& surface, double time, double tolerance, FlowTrace* trace)
     : surface_(surface), time_(time), tolerance_(tolerance), scale_(surface.diagonal()),
       // A triangle that is nearer only during a step is not seen: closer looks at tighter tolerances.
-      longest_(std::clamp(0.5 * std::pow(tolerance / 1e-6, 1.0 / 6), 0.05, 0.5)), trace_(trace) {
-}
+      longest_(std::clamp(0.5 * std::pow(tolerance / 1e-6, 1.0 / 6), 0.05, 0.5)), trace_(trace) {}
 
 void FlowPath::record() {
   if (!trace_) return;
@@ -113,7 +112,8 @@ void FlowPath::tidy(View& view) {
       continue;
     }
     int same = 0;
-    while (same < kept.count && (view.points[std::size_t(from[std::size_t(same)])] - view.points[i]).norm() >= join) ++same;
+    while (same < kept.count && (view.points[std::size_t(from[std::size_t(same)])] - view.points[i]).norm() >= join)
+      ++same;
     const Contact& contact = contacts_.list[i];
     if (same < kept.count) {
       changed = true;
@@ -165,15 +165,14 @@ void FlowPath::ray(const Vec3& foot, const Vec3& normal, double distance, std::u
   Vec3 touched = foot;
   std::uint32_t warm = warm_, hit = face;
   const double limit = distance + (time_ - t_);
-  const double radius =
-      std::max(distance, reference::shrinking_ball<double>(
-                             foot, normal, limit, [&](double r) { return small(rounding, r); },
-                             [&](const Vec3& centre) {
-                               hit = warm; // the last query finds nothing nearer than the one before
-                               warm = nearest(centre, warm);
-                               return surface_.foot(warm, centre).point;
-                             },
-                             &touched));
+  const double radius = std::max(distance, reference::shrinking_ball<double>(
+                                               foot, normal, limit, [&](double r) { return small(rounding, r); },
+                                               [&](const Vec3& centre) {
+                                                 hit = warm; // the last query finds nothing nearer than the one before
+                                                 warm = nearest(centre, warm);
+                                                 return surface_.foot(warm, centre).point;
+                                               },
+                                               &touched));
   x_ = foot + radius * normal;
   t_ += radius - distance;
   record();
@@ -195,7 +194,8 @@ void FlowPath::ray(const Vec3& foot, const Vec3& normal, double distance, std::u
 }
 
 Vec3 FlowPath::slide_step(const Vec3& from, const Vec3& velocity, double step, double* error) const {
-  return reference::dormand_prince<double>(from, step, velocity, [&](const Vec3& y) { return look(y).velocity; }, error);
+  return reference::dormand_prince<double>(
+      from, step, velocity, [&](const Vec3& y) { return look(y).velocity; }, error);
 }
 
 void FlowPath::balance(Vec3& x) const {
@@ -370,7 +370,8 @@ void FlowPath::leave(const Vec3& start, const Vec3& given, std::uint32_t warm) {
   // Largest ball that touches here: the flow leaves along the normal if there is one.
   const double least = std::min(10 * off_surface * scale_, time_ - t_);
   const Vec3 centre = foot + least * normal;
-  if (surface_.foot(nearest(centre, warm_), centre).distance >= least - small(rounding, least)) return ray(foot, normal, 0, warm_);
+  if (surface_.foot(nearest(centre, warm_), centre).distance >= least - small(rounding, least))
+    return ray(foot, normal, 0, warm_);
   const double away = std::min(off_surface * scale_, time_ - t_);
   x_ = foot + away * normal;
   t_ += away;
@@ -387,8 +388,10 @@ FlowEnd FlowPath::run(const Vec3& start, const Vec3& normal, std::uint32_t warm)
   if (trace_) *trace_ = {};
   x_ = start;
   record();
-  if (time_ > 0) leave(start, normal, warm);
-  else warm_ = nearest(start, warm);
+  if (time_ > 0)
+    leave(start, normal, warm);
+  else
+    warm_ = nearest(start, warm);
   for (int round = 0; t_ < time_ * (1 - 1e-14); ++round) {
     if (round >= most_rounds / longest_) {
       end_.flags |= flow_unfinished;

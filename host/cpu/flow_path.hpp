@@ -12,8 +12,8 @@
 //      hand-over), else as a new one.
 #pragma once
 
-#include "host/flow.hpp"
 #include "host/cpu/flow_surface.hpp"
+#include "host/flow.hpp"
 
 #include <array>
 

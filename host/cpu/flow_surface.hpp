@@ -24,7 +24,7 @@ public:
   FlowSurface(std::span<const Vec3> vertices, std::span<const Face> faces);
 
   std::size_t faces() const { return normals_.size(); }
-  double diagonal() const { return diagonal_; }                              ///< of the bounding box
+  double diagonal() const { return diagonal_; }                           ///< of the bounding box
   const Vec3& normal(std::uint32_t face) const { return normals_[face]; } ///< outwards; zero for a face without area
 
   /// As plan::ClosestTree::on_face, less what a flow does not need.

@@ -70,7 +70,8 @@ std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, c
         // A step within 0.9 d cannot cross the surface, so the unsigned distance is enough.
         double next = ray.radius - gap / slope;
         if (gap > 0) {
-          if (!(slope > 0) || next <= ray.low || ray.radius - next > 0.9 * d) next = ray.radius - std::min(gap, 0.9 * d);
+          if (!(slope > 0) || next <= ray.low || ray.radius - next > 0.9 * d)
+            next = ray.radius - std::min(gap, 0.9 * d);
         } else if (!(slope > 0) || next >= ray.high) {
           // The far side of the ball about the closest point.
           const Vec3 from = origin - closest.point[k];

@@ -13,7 +13,7 @@ namespace cowgpu {
 struct LevelSetReport {
   std::uint64_t queries = 0;   ///< closest points asked for
   double largest_residual = 0; ///< of |d - T|
-  double least_slope = 1;      ///< of the direction along the gradient of d: 0 or less where the level set is not a graph
+  double least_slope = 1; ///< of the direction along the gradient of d: 0 or less where the level set is not a graph
   std::uint64_t unsettled = 0; ///< directions left with |d - T| above 1e-12 of the diagonal
   double seconds = 0;
 };

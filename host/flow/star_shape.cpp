@@ -78,9 +78,10 @@ public:
       for (const std::uint32_t v : face) low = low.cwiseMin(vertices[v]), high = high.cwiseMax(vertices[v]);
     diagonal_ = (high - low).norm();
     if (!(tolerance >= 1e-9 * diagonal_))
-      throw Error(Fault::bad_argument, fmt::format("a star-shape time to {} is beyond the rounding of distances: ask for "
-                                                   "{} at least",
-                                                   tolerance, 1e-9 * diagonal_));
+      throw Error(Fault::bad_argument,
+                  fmt::format("a star-shape time to {} is beyond the rounding of distances: ask for "
+                              "{} at least",
+                              tolerance, 1e-9 * diagonal_));
     seed(vertices, faces);
   }
 
@@ -188,7 +189,7 @@ void Search::look(const std::vector<Region>& regions, std::vector<Region>& waiti
   for (std::size_t i = 0; i < open.size(); ++i) {
     const Ball q = round_points(*open[i]), n = round_normals(*open[i]);
     const double distance = std::abs(closest.distance[i]), reach = q.radius + level * n.radius;
-    if (distance + reach < level - rounding) continue;               // no ball of this size fits
+    if (distance + reach < level - rounding) continue;                    // no ball of this size fits
     if (distance > reach + rounding && closest.winding[i] != 0) continue; // it fits inside the body
     left.push_back(*open[i]);
   }
@@ -197,11 +198,13 @@ void Search::look(const std::vector<Region>& regions, std::vector<Region>& waiti
     const Ball q = round_points(r), n = round_normals(r);
     Region one = r, other = r;
     if (q.radius >= level * n.radius)
-      cut(r.points, r.point_count, [](const Vec3& a, const Vec3& b) { return Vec3((a + b) / 2); }, one.points,
+      cut(
+          r.points, r.point_count, [](const Vec3& a, const Vec3& b) { return Vec3((a + b) / 2); }, one.points,
           other.points);
     else
-      cut(r.normals, r.normal_count, [](const Vec3& a, const Vec3& b) { return Vec3((a + b).normalized()); }, one.normals,
-          other.normals);
+      cut(
+          r.normals, r.normal_count, [](const Vec3& a, const Vec3& b) { return Vec3((a + b).normalized()); },
+          one.normals, other.normals);
     waiting.push_back(one);
     waiting.push_back(other);
   }

@@ -11,7 +11,8 @@
 
 namespace cowgpu::reference {
 
-template <class T> using Vector = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Vector = Eigen::Matrix<T, 3, 1>;
 
 /// The point of least norm in the convex hull of `n` vectors, and the weights of the vectors in it: by trying every
 /// subset of up to three for the optimality condition v . n_j >= |v|^2. Returns false, and v = 0, if the hull holds the
@@ -85,8 +86,8 @@ Vector<T> closest_on_mesh(std::span<const Eigen::Vector3d> vertices,
   Vector<T> best = Vector<T>::Zero();
   T least = -1;
   for (const auto& f : faces) {
-    const Vector<T> q = closest_on_triangle<T>(p, vertices[f[0]].cast<T>(), vertices[f[1]].cast<T>(),
-                                               vertices[f[2]].cast<T>());
+    const Vector<T> q =
+        closest_on_triangle<T>(p, vertices[f[0]].cast<T>(), vertices[f[1]].cast<T>(), vertices[f[2]].cast<T>());
     const T d2 = (q - p).squaredNorm();
     if (least < 0 || d2 < least) least = d2, best = q;
   }
@@ -138,8 +139,8 @@ Vector<T> dormand_prince(const Vector<T>& x, T h, const Vector<T>& k1, const Dir
       direction(x + h * (k1 * T(19372) / 6561 - k2 * T(25360) / 2187 + k3 * T(64448) / 6561 - k4 * T(212) / 729));
   const Vector<T> k6 = direction(x + h * (k1 * T(9017) / 3168 - k2 * T(355) / 33 + k3 * T(46732) / 5247 +
                                           k4 * T(49) / 176 - k5 * T(5103) / 18656));
-  const Vector<T> y = x + h * (k1 * T(35) / 384 + k3 * T(500) / 1113 + k4 * T(125) / 192 - k5 * T(2187) / 6784 +
-                               k6 * T(11) / 84);
+  const Vector<T> y =
+      x + h * (k1 * T(35) / 384 + k3 * T(500) / 1113 + k4 * T(125) / 192 - k5 * T(2187) / 6784 + k6 * T(11) / 84);
   if (error) {
     const Vector<T> k7 = direction(y);
     *error = (h * (k1 * T(71) / 57600 - k3 * T(71) / 16695 + k4 * T(71) / 1920 - k5 * T(17253) / 339200 +

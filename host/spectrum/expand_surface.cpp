@@ -30,7 +30,8 @@ SphereCoefficients expand_on(const SphereGrid& grid, const SurfaceSampler& sampl
   report.ring_length = grid.ring_length;
   const std::vector<double> values = sampler(grid, report);
   if (values.size() != std::size_t(fields) * grid.points())
-    throw Error(Fault::bad_argument, fmt::format("{} values are no six fields on {} points", values.size(), grid.points()));
+    throw Error(Fault::bad_argument,
+                fmt::format("{} values are no six fields on {} points", values.size(), grid.points()));
   report.sample_seconds = seconds_since(start);
   const auto sampled = Clock::now();
   SphereCoefficients coefficients(options.lmax, fields);
