@@ -2,7 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/map/harmonic.hpp"
-#include "host/spectrum/paper_harmonic.hpp"
+#include "host/spectrum/paper_tables.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>

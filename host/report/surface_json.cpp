@@ -2,7 +2,7 @@
 
 #include "host/io/number.hpp"
 #include "host/report/json_parts.hpp"
-#include "host/spectrum/paper_harmonic.hpp"
+#include "host/spectrum/paper_tables.hpp"
 
 #include <nlohmann/json.hpp>
 
