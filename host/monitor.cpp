@@ -4,6 +4,11 @@
 
 namespace cowgpu {
 
+Monitor& silent_monitor() {
+  static Monitor silent;
+  return silent;
+}
+
 void check_stop(const Monitor& monitor) {
   if (monitor.stopped()) throw Error(Fault::interrupted, "interrupted: nothing was written");
 }

@@ -18,6 +18,9 @@ public:
   virtual bool stopped() const { return false; }
 };
 
+/// For callers whom nobody watches.
+Monitor& silent_monitor();
+
 /// Throws Error(Fault::interrupted) if the monitor says stop.
 void check_stop(const Monitor& monitor);
 

@@ -19,6 +19,8 @@ struct SphereSamples {
   std::uint64_t flipped_points = 0;           ///< points whose triangle is flipped
   std::uint64_t flipped_faces = 0;            ///< triangles of the map with det(a, b, c) < 0
   std::uint64_t flat_faces = 0;               ///< triangles of the map with det(a, b, c) = 0: never hit
+  /// Pairs of a point and a triangle that rounding left open and exact arithmetic on the host decided; may differ by path.
+  std::uint64_t exact_decisions = 0;
 
   std::size_t points() const { return faces.size(); }
 };

@@ -2,13 +2,20 @@
 
 #include "host/error.hpp"
 #include "host/map/harmonic.hpp"
+#include "host/map/smooth.hpp"
+#include "host/map/stretch.hpp"
+#include "host/mesh/builtin.hpp"
 #include "host/spectrum/paper_tables.hpp"
+#include "host/spectrum/rotation.hpp"
+#include "tests/support/compare_moments.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
 #include <random>
 
 using namespace cowgpu;
@@ -179,6 +186,100 @@ TEST_CASE("what aliasing and truncation are estimated to be is what a larger exp
   }
 }
 
+TEST_CASE("both paths expand a surface alike", "[expand_surface]") {
+  const RawMesh mesh = builtin_mesh("cow@1");
+  const auto surface = ManifoldSurface::from(ClosedSurface::from(mesh));
+  Monitor monitor;
+  Paths paths;
+  for (const SphereMap& map : {harmonic_map(surface), stretch_map(surface, {}, monitor)})
+    for (const int lmax : {0, 1, 7, 13, 512}) {
+      INFO(map.method << ", lmax " << lmax);
+      ExpandSurfaceOptions options;
+      options.lmax = lmax;
+      options.origin = {0.1, 0.3, 0};
+      options.estimate_aliasing = lmax < 512;
+      std::optional<SurfaceExpansion> first;
+      ExpandSurfaceReport first_report;
+      paths.each([&](Backend& backend) {
+        INFO(backend.facts().name);
+        ExpandSurfaceReport report;
+        SurfaceExpansion found = expand_surface(mesh.vertices, mesh.faces, map, options, backend, monitor, &report);
+        CHECK(report.rings == std::max(257, 2 * lmax + 1));
+        CHECK(report.faces_hit > 0);
+        CHECK(report.truncation.size() == std::size_t(lmax) + 1);
+        if (!first) {
+          first = std::move(found);
+          first_report = report;
+          return;
+        }
+        double apart = std::abs(found.mean_dphi - first->mean_dphi) + std::abs(found.mean_dtheta - first->mean_dtheta);
+        for (std::size_t i = 0; i < found.coefficients.values.size(); ++i)
+          apart = std::max(apart, std::abs(found.coefficients.values[i] - first->coefficients.values[i]));
+        check_at_most(apart, 8e-15, "coefficients");
+        CHECK(report.faces_hit == first_report.faces_hit);
+        CHECK(report.flipped_faces == first_report.flipped_faces);
+        CHECK(report.folded_points == first_report.folded_points);
+        CHECK(report.aliasing.size() == first_report.aliasing.size());
+        for (std::size_t l = 0; l < report.aliasing.size(); ++l)
+          for (std::size_t f = 0; f < 6; ++f)
+            CHECK(std::abs(report.aliasing[l][f] - first_report.aliasing[l][f]) < 8e-15);
+      });
+    }
+}
+
+namespace {
+
+// The largest difference between the coefficients of a turned body's surface and the turned coefficients, degrees 0 to 8,
+// against the largest coefficient: f_r, and the position, whose components turn as well.
+std::array<double, 2> turned_apart(const RawMesh& mesh, const std::function<SphereMap(const ManifoldSurface&)>& make) {
+  const EulerAngles angles{0.7, 1.1, -0.4};
+  const Eigen::Matrix3d rotation = rotation_matrix(angles);
+  const auto expanded = [&](const RawMesh& body) {
+    const auto surface = ManifoldSurface::from(ClosedSurface::from(body));
+    ExpandSurfaceOptions options;
+    options.lmax = 8;
+    return expand(body, make(surface), options).coefficients;
+  };
+  Monitor monitor;
+  const SphereCoefficients straight = rotate(expanded(mesh), angles, monitor),
+                           turned = expanded(rotated(mesh, rotation));
+  std::array<double, 2> apart{};
+  double largest = 0;
+  for (int l = 0; l <= 8; ++l)
+    for (int m = 0; m <= l; ++m) {
+      largest = std::max(largest, std::abs(turned.at(0, l, m)));
+      apart[0] = std::max(apart[0], std::abs(turned.at(0, l, m) - straight.at(0, l, m)));
+      for (int i = 0; i < 3; ++i) {
+        std::complex<double> want = 0;
+        for (int j = 0; j < 3; ++j) want += rotation(i, j) * straight.at(3 + j, l, m);
+        apart[1] = std::max(apart[1], std::abs(turned.at(3 + i, l, m) - want));
+      }
+    }
+  return {apart[0] / largest, apart[1] / largest};
+}
+
+} // namespace
+
+TEST_CASE("turning the body turns the coefficients of its surface, over every map", "[expand_surface]") {
+  // What is left is aliasing: the grid does not turn.
+  const RawMesh mesh = builtin_mesh("cow@1");
+  Monitor monitor;
+  HarmonicOptions plain, polished;
+  plain.pole.rule = polished.pole.rule = Pole::Rule::vertex;
+  plain.pole.vertex = polished.pole.vertex = 100;
+  polished.polish = true;
+  const auto check = [&](const char* what, double figure,
+                         const std::function<SphereMap(const ManifoldSurface&)>& make) {
+    const auto apart = turned_apart(mesh, make);
+    check_at_most(apart[0], figure, std::string("f_r over the map ") + what);
+    check_at_most(apart[1], figure, std::string("x, y, z over the map ") + what);
+  };
+  check("harmonic", 1e-5, [&](const ManifoldSurface& s) { return harmonic_map(s, plain); });
+  check("polished", 1e-5, [&](const ManifoldSurface& s) { return harmonic_map(s, polished); });
+  check("smooth", 1e-5, [&](const ManifoldSurface& s) { return smooth_map(s); });
+  check("stretch", 1e-5, [&](const ManifoldSurface& s) { return stretch_map(s, {}, monitor); });
+}
+
 TEST_CASE("maps of another mesh and degrees out of range are refused", "[expand_surface]") {
   const RawMesh mesh = box({1, 1, 1}, {-0.5, -0.5, -0.5});
   SphereMap map = radial_map(mesh.vertices);
@@ -200,10 +301,14 @@ TEST_CASE("the paper's recipe gives the paper's table of the harmonic map", "[ex
   if (!cow) return skip_without_cow();
   const SphereMap map = harmonic_map(ManifoldSurface::from(*cow), HarmonicOptions::paper_recipe());
   ExpandSurfaceOptions options;
-  options.lmax = 32;
+  options.lmax = 3;
   options.closest_point = true;
   options.signed_dphi = false;
   const SurfaceExpansion expansion = expand(cow->mesh(), map, options);
+  const auto distances = paper_distances(expansion);
+  CHECK(distances[0] < 2e-4);
+  CHECK(distances[1] < 1.1e-3);
+  CHECK(distances[2] < 1.8e-3);
   const auto misfits = paper_misfits(expansion);
   CAPTURE(misfits[0], misfits[1], misfits[2]);
   CHECK(misfits[0] <= 0.003);

@@ -213,6 +213,37 @@ TEST_CASE("the JSON of a map holds the findings of judge()", "[map-cli]") {
   CHECK(quality["sentences"] == nlohmann::json(want.sentences));
 }
 
+TEST_CASE("a stretch map says how many relabelled copies come to it", "[map-cli]") {
+  const std::vector<std::string> arguments = {"map", "builtin:sphere@2", "--converge", "--relabellings",
+                                              "4",   "--lmax",           "8"};
+  const ProgramRun run = run_program(arguments);
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK_THAT(run.out, Contains("relabelled and turned    4 of 4 copies reach this mean square to 1e-06"));
+  std::vector<std::string> with_json = arguments;
+  with_json.emplace_back("--json");
+  const auto stretch = nlohmann::json::parse(run_program(with_json).out)["stretch"];
+  CHECK(stretch["energy"] > 1);
+  CHECK(stretch["gradient"] < 1e-6);
+  CHECK(stretch["relabellings"]["reached"] == 4);
+  REQUIRE(stretch["relabellings"]["copies"].size() == 4);
+  CHECK(stretch["relabellings"]["copies"][3]["seed"] == 4);
+  CHECK(run_program({"map", "builtin:sphere@2", "--method", "smooth", "--relabellings", "2"}).exit_code == 2);
+}
+
+TEST_CASE("a long map is interrupted", "[map-cli]") {
+  const TemporaryFolder folder;
+  for (const char* method : {"harmonic", "smooth"}) {
+    ProgramOptions options;
+    options.interrupt_after = 0.5;
+    const std::string path = folder / "map.ply";
+    const ProgramRun run = run_program({"map", "builtin:cow@5", "--method", method, "-o", path}, options);
+    INFO(run.err);
+    CHECK(run.exit_code == 130);
+    CHECK_FALSE(std::filesystem::exists(path));
+  }
+}
+
 TEST_CASE("infinite shear is null in the JSON of a map, and flat triangles are listed", "[map-cli]") {
   const auto surface = manifold(test::icosphere(1));
   SphereMap map{"file", surface.vertices(), {}};

@@ -279,6 +279,26 @@ TEST_CASE("the same map gives the same bits on any number of threads and again",
   });
 }
 
+TEST_CASE("both paths find the same places on 1025 rings, on even, folded and crowded maps", "[sample]") {
+  Paths paths;
+  for (const MappedMesh& map : {warped_map(3, 0.02, 5), warped_map(3, 0.3, 11), crowded_map(3, 12), octahedron_map()})
+    for (const int lmax : {13, 1024}) {
+      INFO(map.name << ", lmax " << lmax);
+      const SphereGrid grid = make_grid(GridKind::gauss_legendre, lmax);
+      SphereSamples first;
+      paths.each([&](Backend& backend) {
+        INFO(backend.facts().name);
+        SphereSamples found = sample(backend, map, grid);
+        CHECK(found.points() == grid.points());
+        CHECK(found.exact_decisions < grid.points() / 10); // most on the octahedron, its edges on the grid
+        if (first.faces.empty())
+          first = std::move(found);
+        else
+          CHECK((found.faces == first.faces && found.weights == first.weights));
+      });
+    }
+}
+
 TEST_CASE("sampling stops when asked", "[sample]") {
   struct Impatient final : Monitor {
     bool stopped() const override { return true; }

@@ -1,5 +1,6 @@
 #include "host/error.hpp"
 #include "host/map/stretch.hpp"
+#include "host/map/stretch_repeats.hpp"
 #include "host/mesh/subdivide.hpp"
 #include "host/orientation.hpp"
 #include "tests/support/meshes.hpp"
@@ -249,6 +250,34 @@ TEST_CASE("converged stretch maps of the benchmark are one minimum, whatever its
   for (std::size_t v = 0; v < other.to.size(); ++v)
     largest = std::max(largest, (rotation.transpose() * again.positions[other.to[v]] - map.positions[v]).norm());
   CHECK(largest < 1e-5);
+}
+
+TEST_CASE("ten relabelled and turned copies of the benchmark reach one minimum", "[stretch]") {
+  const auto cow = test::benchmark_cow();
+  if (!cow) return test::skip_without_cow();
+  const ManifoldSurface surface = ManifoldSurface::from(*cow);
+  const StretchOptions options{30, 0, true};
+  Monitor monitor;
+  const auto repeats = repeat_stretch_map(surface, mapped(surface, options), options, 10, 0, monitor);
+  REQUIRE(repeats.size() == 10);
+  for (const StretchRepeat& repeat : repeats) {
+    INFO("seed " << repeat.seed);
+    CHECK(repeat.reached);
+    CHECK(repeat.largest < 1e-6); // 2e-8
+    CHECK(repeat.rms <= repeat.largest);
+    CHECK(repeat.rms > 0);
+  }
+}
+
+TEST_CASE("copies do not reach the energy of another map", "[stretch]") {
+  const ManifoldSurface surface = manifold(test::scaled(test::icosphere(2), {1, 2, 3}));
+  Monitor monitor;
+  const auto repeats = repeat_stretch_map(surface, mapped(surface, {0, 0, false}), {30, 0, true}, 3, 2, monitor);
+  for (const StretchRepeat& repeat : repeats) {
+    CHECK_FALSE(repeat.reached);
+    CHECK(repeat.largest > 1e-3);
+  }
+  CHECK(repeat_stretch_map(surface, mapped(surface), {}, 0, 0, monitor).empty());
 }
 
 TEST_CASE("a sphere maps to itself", "[stretch]") {

@@ -24,8 +24,8 @@ constexpr std::array map_names = {"harmonic", "stretch", "smooth"};
 
 SphereMap make_map(const std::string& method, bool paper, const ManifoldSurface& surface, Monitor& monitor) {
   if (method == "stretch") return stretch_map(surface, {}, monitor);
-  if (method == "smooth") return smooth_map(surface);
-  return harmonic_map(surface, paper ? HarmonicOptions::paper_recipe() : HarmonicOptions{});
+  if (method == "smooth") return smooth_map(surface, {}, monitor);
+  return harmonic_map(surface, paper ? HarmonicOptions::paper_recipe() : HarmonicOptions{}, monitor);
 }
 
 SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choice, bool estimate_aliasing,

@@ -7,6 +7,7 @@
 #include "host/map/harmonic.hpp"
 #include "host/map/smooth.hpp"
 #include "host/map/stretch.hpp"
+#include "host/map/stretch_repeats.hpp"
 #include "host/mesh/half_edges.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/map_report.hpp"
@@ -27,6 +28,7 @@ struct Options {
   unsigned sweeps = StretchOptions{}.sweeps;
   double lambda = 0;
   bool converge = false;
+  unsigned relabellings = 0;
   int lmax = 512;
   std::string output;
   bool json = false;
@@ -78,14 +80,18 @@ HarmonicOptions harmonic_options(const Options& options) {
   return harmonic;
 }
 
-SphereMap make_map(const Options& options, const ManifoldSurface& surface, Monitor& monitor) {
-  if (options.method == "harmonic") return harmonic_map(surface, harmonic_options(options));
-  if (options.method == "smooth") return smooth_map(surface);
+StretchOptions stretch_options(const Options& options) {
   StretchOptions stretch;
   stretch.sweeps = options.sweeps;
   stretch.lambda = options.lambda;
   stretch.converge = options.converge;
-  return stretch_map(surface, stretch, monitor);
+  return stretch;
+}
+
+SphereMap make_map(const Options& options, const ManifoldSurface& surface, Monitor& monitor) {
+  if (options.method == "harmonic") return harmonic_map(surface, harmonic_options(options), monitor);
+  if (options.method == "smooth") return smooth_map(surface, {}, monitor);
+  return stretch_map(surface, stretch_options(options), monitor);
 }
 
 void run(const Options& options, const Common& common) {
@@ -116,6 +122,14 @@ void run(const Options& options, const Common& common) {
   start = Clock::now();
   report.quality = judge(surface, map, options.lmax);
   report.judge_seconds = seconds_since(start);
+  if (options.method == "stretch") {
+    report.stretch = measure_stretch(surface, map, options.lambda);
+    start = Clock::now();
+    report.repeats =
+        repeat_stretch_map(surface, map, stretch_options(options), options.relabellings, common.threads, monitor);
+    report.repeat_seconds = seconds_since(start);
+    monitor.clear();
+  }
   if (file) {
     write_map(surface, map, format, *file);
     check_stop(monitor);
@@ -183,6 +197,14 @@ void add_map(CLI::App& app, Common& common) {
                             ->capture_default_str();
   CLI::Option* converge =
       command->add_flag("--converge", options->converge, "stretch: go on to a minimum by Newton's method");
+  CLI::Option* relabellings =
+      command
+          ->add_option("--relabellings", options->relabellings,
+                       "stretch: map so many copies of the body, numbered and turned at random, as well, and say how "
+                       "many come to the same map (each takes as long as the first)")
+          ->check(CLI::Range(0U, 10000U))
+          ->type_name("N")
+          ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degree of the grid that the map is judged against")
       ->check(CLI::Range(1, largest_grid_degree))
       ->type_name("L")
@@ -194,9 +216,10 @@ void add_map(CLI::App& app, Common& common) {
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.map.v1.json)");
   add_common_options(*command, common);
   command->footer("Examples: cowgpu map benchmark -o cow.ply; cowgpu map benchmark --recipe paper --lmax 256");
-  const std::vector<Belonging> belongings = {{weights, "harmonic"}, {pole, "harmonic"},   {scale, "harmonic"},
-                                             {centre, "harmonic"},  {polish, "harmonic"}, {recipe, "harmonic"},
-                                             {sweeps, "stretch"},   {lambda, "stretch"},  {converge, "stretch"}};
+  const std::vector<Belonging> belongings = {{weights, "harmonic"},    {pole, "harmonic"},   {scale, "harmonic"},
+                                             {centre, "harmonic"},     {polish, "harmonic"}, {recipe, "harmonic"},
+                                             {sweeps, "stretch"},      {lambda, "stretch"},  {converge, "stretch"},
+                                             {relabellings, "stretch"}};
   command->callback([options, &common, belongings] {
     if (options->method.empty()) options->method = options->recipe.empty() ? "stretch" : "harmonic";
     refuse_strangers(belongings, options->method);

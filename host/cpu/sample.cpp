@@ -62,7 +62,10 @@ public:
           const double least = least_[std::size_t(j)];
           if (least < -plan::sample_filter) continue;
           auto place = plan::Place::inside;
-          if (least <= plan::sample_filter) place = sample_.place(rank, directions_(ring, span.first + j));
+          if (least <= plan::sample_filter) {
+            place = sample_.place(rank, directions_(ring, span.first + j));
+            ++exact;
+          }
           if (place != plan::Place::outside) claim(row + std::size_t(j), rank, place);
         }
       }
@@ -96,7 +99,7 @@ public:
       }
   }
 
-  std::uint64_t folded = 0, edges = 0, flipped = 0, uncovered = 0;
+  std::uint64_t folded = 0, edges = 0, flipped = 0, uncovered = 0, exact = 0;
   std::size_t first_uncovered = std::numeric_limits<std::size_t>::max();
 
 private:
@@ -143,6 +146,7 @@ SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> face
     result.folded_points += band.folded;
     result.edge_points += band.edges;
     result.flipped_points += band.flipped;
+    result.exact_decisions += band.exact;
     uncovered += band.uncovered;
     first_uncovered = std::min(first_uncovered, band.first_uncovered);
     ++done;

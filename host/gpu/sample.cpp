@@ -57,6 +57,7 @@ public:
     auto& open = output_.open;
     std::sort(open.begin(), open.end());
     std::vector<plan::Place> places(open.size());
+    result.exact_decisions += open.size();
     constexpr std::size_t chunk = 256;
     parallel_for(0, (open.size() + chunk - 1) / chunk, [&](std::size_t task, unsigned) {
       for (std::size_t i = task * chunk; i < std::min(open.size(), (task + 1) * chunk); ++i)

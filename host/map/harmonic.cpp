@@ -63,7 +63,7 @@ struct Disk {
 };
 
 Disk harmonic_disk(const ManifoldSurface& surface, const HalfEdges& half_edges, const SparseMatrix& laplace,
-                   EdgeWeights weights, std::uint32_t pole) {
+                   EdgeWeights weights, std::uint32_t pole, Monitor& monitor) {
   const auto& vertices = surface.vertices();
   Disk disk;
   disk.w.assign(vertices.size(), 0);
@@ -112,7 +112,7 @@ Disk harmonic_disk(const ManifoldSurface& surface, const HalfEdges& half_edges, 
   if (weights == EdgeWeights::mean_value) {
     solution = solve_general(matrix, right, what, &disk.residual);
   } else {
-    SymmetricSolver solver(matrix, what);
+    SymmetricSolver solver(matrix, what, Ordering::automatic, monitor);
     solution = solver.solve(right);
     disk.residual = solver.residual();
   }
@@ -163,7 +163,7 @@ HarmonicOptions HarmonicOptions::paper_recipe() {
   return options;
 }
 
-SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& options) {
+SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& options, Monitor& monitor) {
   if (!(options.disk_scale >= 0) || !std::isfinite(options.disk_scale))
     throw Error(Fault::bad_argument, fmt::format("a disk cannot be scaled by {}: give a positive number, or 0 to let "
                                                  "each hemisphere have half of the area",
@@ -177,7 +177,9 @@ SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& op
   const std::uint32_t pole = pole_vertex(surface, options.pole);
   const auto areas = vertex_areas(surface);
   const SparseMatrix laplace = laplacian(surface, half_edges, options.weights);
-  const Disk disk = harmonic_disk(surface, half_edges, laplace, options.weights, pole);
+  check_stop(monitor);
+  const Disk disk = harmonic_disk(surface, half_edges, laplace, options.weights, pole, monitor);
+  check_stop(monitor);
   const double scale = options.disk_scale > 0 ? options.disk_scale : halving_scale(disk, areas, pole);
 
   std::vector<Direction> x(disk.w.size(), Direction::Zero());
@@ -197,7 +199,7 @@ SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& op
   map.notes.push_back(fmt::format("the disk was multiplied by {:.6g}{}", scale,
                                   options.disk_scale > 0 ? "" : ", which brings half of the area to each hemisphere"));
   if (options.polish) {
-    const PolishReport report = polish(laplace, surface.faces(), areas, x);
+    const PolishReport report = polish(laplace, surface.faces(), areas, x, monitor);
     map.notes.push_back(fmt::format("polished in {} steps to a relative imbalance of {:.1e}: the Dirichlet energy over "
                                     "4 pi went from {:.9g} to {:.9g}",
                                     report.steps, std::sqrt(report.decrement),

@@ -3,6 +3,7 @@
 
 #include "host/map/laplacian.hpp"
 #include "host/map/sphere_map.hpp"
+#include "host/monitor.hpp"
 
 #include <cstdint>
 
@@ -52,7 +53,9 @@ struct HarmonicOptions {
 /// weights are negative, triangles may come out flipped: judge() in host/map/quality.hpp counts them.
 ///
 /// Throws Error: map_topology unless the surface is one sphere; bad_argument for the pole or a scale that is not
-/// positive; map_failed where weights or the system fail (laplacian.hpp, solve.hpp, moebius.hpp).
-SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& options = {});
+/// positive; map_failed where weights or the system fail (laplacian.hpp, solve.hpp, moebius.hpp);
+/// interrupted, between the parts of the solution and the steps of the polish.
+SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& options = {},
+                       Monitor& monitor = silent_monitor());
 
 } // namespace cowgpu

@@ -67,7 +67,7 @@ double inner(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 } // namespace
 
 PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, std::span<const double> areas,
-                    std::span<Direction> x, int most_steps) {
+                    std::span<Direction> x, Monitor& monitor, int most_steps) {
   constexpr double wanted = 1e-26, acceptable = 1e-12, longest = 1.2;
   SparseMatrix metric = laplace;
   for (Eigen::Index i = 0; i < metric.cols(); ++i) {
@@ -78,7 +78,7 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, st
       metric.insert(i, i) = 1; // a vertex of no face
   }
   metric.makeCompressed();
-  SymmetricSolver solver(metric, "the system of the harmonic map to the sphere");
+  SymmetricSolver solver(metric, "the system of the harmonic map to the sphere", Ordering::automatic, monitor);
 
   centre(x, areas);
   const Eigen::MatrixXd start = as_matrix(x), pull = laplace * start;
@@ -88,7 +88,10 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, st
   Eigen::MatrixXd left = imbalance(start, pull, faces), direction = solver.solve(left, Refinement::none);
   report.decrement = inner(left, direction) / report.energy;
   double length = longest;
+  const double first = report.decrement;
   while (report.decrement > wanted && report.steps < most_steps) {
+    check_stop(monitor);
+    monitor.progress("polishing the map", std::log(first / report.decrement) / std::log(first / wanted));
     bool fell = false;
     for (length = std::min(2 * length, longest); !fell && length > longest / 20; length /= fell ? 1 : 2) {
       for (std::size_t i = 0; i < x.size(); ++i) {

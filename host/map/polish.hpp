@@ -3,6 +3,7 @@
 
 #include "host/map/laplacian.hpp"
 #include "host/map/moebius.hpp"
+#include "host/monitor.hpp"
 
 #include <span>
 #include <vector>
@@ -26,8 +27,8 @@ struct PolishReport {
 /// X. Gu et al., IEEE Trans. Med. Imaging 23 (2004) 949).
 ///
 /// `laplace` must be symmetric, `areas` as from vertex_areas. Throws Error(map_failed) if the decrement stays above
-/// 1e-12, and what centre() and SymmetricSolver throw.
+/// 1e-12, interrupted, and what centre() and SymmetricSolver throw.
 PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, std::span<const double> areas,
-                    std::span<Direction> x, int most_steps = 400);
+                    std::span<Direction> x, Monitor& monitor = silent_monitor(), int most_steps = 400);
 
 } // namespace cowgpu

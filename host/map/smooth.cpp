@@ -96,7 +96,7 @@ double movement(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to, std::spa
 
 } // namespace
 
-SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& options) {
+SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& options, Monitor& monitor) {
   if (!(options.first_step > 0 && options.largest_step > 0 && options.settled > 0 && options.roundness > 0 &&
         options.most_steps > 0))
     throw Error(Fault::bad_argument, "the steps, the roundness and the number of steps of smoothing must be positive");
@@ -117,7 +117,14 @@ SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& option
   double step = options.first_step, moved = std::numeric_limits<double>::infinity();
   Radii now;
   int steps = 0;
+  double first = 0; // movement of the first step
   for (; steps < options.most_steps && !(moved <= options.settled * now.mean); ++steps) {
+    check_stop(monitor);
+    if (steps > 0) {
+      const double wanted = options.settled * now.mean;
+      monitor.progress("smoothing the surface",
+                       std::clamp(std::log(first / moved) / std::log(first / wanted), 0.0, 1.0));
+    }
     const SparseMatrix mass = mass_matrix(x, faces, laplace);
     const SparseMatrix system = mass + step * laplace;
     if (solver)
@@ -125,11 +132,13 @@ SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& option
     else
       solver.emplace(system, "the system of the mean-curvature flow",
                      std::size_t(x.rows()) < nested_dissection_from_here ? Ordering::minimum_degree
-                                                                         : Ordering::nested_dissection);
+                                                                         : Ordering::nested_dissection,
+                     monitor);
     Eigen::MatrixXd next = solver->solve(mass * x);
     normalise(next, faces);
     // Short steps move little without being near the end.
     moved = movement(x, next, areas) * std::max(1.0, options.largest_step / step);
+    if (steps == 0) first = moved;
     x = std::move(next);
     now = radii(x, faces);
     step = std::min(2 * step, options.largest_step);

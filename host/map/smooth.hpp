@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/map/sphere_map.hpp"
+#include "host/monitor.hpp"
 
 namespace cowgpu {
 
@@ -25,7 +26,9 @@ struct SmoothOptions {
 /// orientation is kept, and triangles may flip where cotangent weights are negative.
 ///
 /// Throws Error: map_topology unless the surface is one sphere; bad_argument for options that are not positive;
-/// map_failed where it has not settled after most_steps or is not round then, or where weights, systems or centring fail.
-SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& options = {});
+/// map_failed where it has not settled after most_steps or is not round then, or where weights, systems or centring fail;
+/// interrupted, between steps.
+SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& options = {},
+                     Monitor& monitor = silent_monitor());
 
 } // namespace cowgpu

@@ -89,6 +89,9 @@ Eigen::MatrixXd refined(const SparseMatrix& matrix, const Eigen::MatrixXd& right
   return x;
 }
 
+// Of the time of ordering and factorising, by nested dissection, where that is long.
+constexpr double ordering_share = 0.5;
+
 } // namespace
 
 struct SymmetricSolver::State {
@@ -100,20 +103,26 @@ struct SymmetricSolver::State {
   double residual = 0;
 };
 
-SymmetricSolver::SymmetricSolver(const SparseMatrix& matrix, std::string what, Ordering ordering)
+SymmetricSolver::SymmetricSolver(const SparseMatrix& matrix, std::string what, Ordering ordering, Monitor& monitor)
     : state_(std::make_unique<State>()) {
   if (ordering == Ordering::automatic)
     ordering =
         std::size_t(matrix.cols()) < nested_dissection_from ? Ordering::minimum_degree : Ordering::nested_dissection;
   state_->what = std::move(what);
   state_->ordering = ordering;
+  constexpr const char* phase = "solving a linear system";
+  monitor.progress(phase, 0);
   if (matrix.cols() > 0)
     state_->order =
         ordering == Ordering::nested_dissection ? nested_dissection(matrix, state_->what) : minimum_degree(matrix);
   SparseMatrix permuted(matrix.rows(), matrix.cols());
   permuted.selfadjointView<Eigen::Upper>() = matrix.selfadjointView<Eigen::Upper>().twistedBy(state_->order);
   state_->factor.analyzePattern(permuted);
+  check_stop(monitor);
+  monitor.progress(phase, ordering_share);
   factorise(matrix);
+  check_stop(monitor);
+  monitor.progress(phase, 1);
 }
 
 SymmetricSolver::~SymmetricSolver() = default;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/map/laplacian.hpp"
+#include "host/monitor.hpp"
 
 #include <memory>
 
@@ -27,8 +28,9 @@ enum class Refinement {
 class SymmetricSolver {
 public:
   /// Orders and factorises. Both triangles of `matrix` must be there. `what` names the system in errors ("the harmonic
-  /// system"). Throws Error(map_failed) if a pivot is not positive or not finite.
-  explicit SymmetricSolver(const SparseMatrix& matrix, std::string what, Ordering ordering = Ordering::automatic);
+  /// system"). Throws Error(map_failed) if a pivot is not positive or not finite, interrupted between the two.
+  explicit SymmetricSolver(const SparseMatrix& matrix, std::string what, Ordering ordering = Ordering::automatic,
+                           Monitor& monitor = silent_monitor());
   ~SymmetricSolver();
   SymmetricSolver(SymmetricSolver&&) noexcept;
 

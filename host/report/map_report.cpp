@@ -44,6 +44,44 @@ ordered_json quantiles_json(std::span<const double> parts, std::span<const doubl
   return {{"parts", parts}, {"values", values}}; // the library writes infinity as null
 }
 
+struct Repeats {
+  std::size_t reached = 0;
+  double energy = 0, largest = 0, rms = 0; // the worst: relative; of those that reach the map's energy
+};
+
+Repeats summary(const MapReport& report) {
+  Repeats all;
+  for (const StretchRepeat& repeat : report.repeats) {
+    if (!repeat.reached) continue;
+    ++all.reached;
+    all.energy = std::max(all.energy, std::abs(repeat.energy / report.stretch->energy - 1));
+    all.largest = std::max(all.largest, repeat.largest);
+    all.rms = std::max(all.rms, repeat.rms);
+  }
+  return all;
+}
+
+std::string repeats_text(const MapReport& report) {
+  const Repeats all = summary(report);
+  std::string text =
+      fmt::format("{} of {} copies reach this mean square to {:.0e}", all.reached, report.repeats.size(), same_minimum);
+  if (all.reached > 0)
+    text += fmt::format(" (to {:.1e}, positions to {:.1e}, root mean square {:.1e})", all.energy, all.largest, all.rms);
+  return text + fmt::format(", in {:.3f} s", report.repeat_seconds);
+}
+
+ordered_json stretch_json(const MapReport& report) {
+  if (!report.stretch) return nullptr;
+  ordered_json copies = ordered_json::array();
+  for (const StretchRepeat& r : report.repeats)
+    copies.push_back(
+        {{"seed", r.seed}, {"energy", r.energy}, {"largest", r.largest}, {"rms", r.rms}, {"reached", r.reached}});
+  return {
+      {"energy", report.stretch->energy},
+      {"gradient", report.stretch->gradient},
+      {"relabellings", {{"count", report.repeats.size()}, {"reached", summary(report).reached}, {"copies", copies}}}};
+}
+
 ordered_json quality_json(const MapQuality& q) {
   ordered_json parts = ordered_json::array();
   for (const UnseenPart& part : q.parts)
@@ -88,6 +126,10 @@ void write_screen(const MapReport& report, const Sink& sink) {
                                        q.smallest_area / (q.cell * q.cell), where(mesh, q.smallest_area_face)));
   row("smallest height", fmt::format("{:.3e} rad, {:.3g} of a cell, {}", q.smallest_height, q.smallest_height / q.cell,
                                      where(mesh, q.smallest_height_face)));
+  if (report.stretch)
+    row("stretch", fmt::format("mean square {:.9g} (1: an isometry), gradient {:.1e}", report.stretch->energy,
+                               report.stretch->gradient));
+  if (!report.repeats.empty()) row("relabelled and turned", repeats_text(report));
   row("seen by the grid", fmt::format("{} of {} triangles, {:.6g} % of the surface", q.triangles - q.unseen,
                                       q.triangles, 100 * (1 - q.unseen_area)));
   sink("in words:\n");
@@ -98,20 +140,23 @@ void write_json(const MapReport& report, const Sink& sink) {
   const RawMesh& mesh = *report.mesh;
   std::vector<std::string> notes = mesh.notes;
   notes.insert(notes.end(), report.map->notes.begin(), report.map->notes.end());
-  const ordered_json all = {{"schema", "cowgpu.map.v1"},
-                            {"program", program_json()},
-                            {"command", report.command},
-                            {"created", report.created},
-                            {"mesh",
-                             {{"name", mesh.name},
-                              {"sha256", mesh.sha256},
-                              {"vertices", mesh.vertices.size()},
-                              {"faces", mesh.faces.size()}}},
-                            {"method", report.map->method},
-                            {"notes", notes},
-                            {"output", report.output.empty() ? ordered_json() : ordered_json(report.output)},
-                            {"quality", quality_json(report.quality)},
-                            {"timings", {{"map", report.map_seconds}, {"judge", report.judge_seconds}}}};
+  const ordered_json all = {
+      {"schema", "cowgpu.map.v1"},
+      {"program", program_json()},
+      {"command", report.command},
+      {"created", report.created},
+      {"mesh",
+       {{"name", mesh.name},
+        {"sha256", mesh.sha256},
+        {"vertices", mesh.vertices.size()},
+        {"faces", mesh.faces.size()}}},
+      {"method", report.map->method},
+      {"notes", notes},
+      {"output", report.output.empty() ? ordered_json() : ordered_json(report.output)},
+      {"quality", quality_json(report.quality)},
+      {"stretch", stretch_json(report)},
+      {"timings",
+       {{"map", report.map_seconds}, {"judge", report.judge_seconds}, {"relabellings", report.repeat_seconds}}}};
   sink(json_text(all) + "\n");
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "host/map/quality.hpp"
+#include "host/map/stretch_repeats.hpp"
 #include "host/report/result.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +18,10 @@ struct MapReport {
   const RawMesh* mesh = nullptr;
   const SphereMap* map = nullptr;
   MapQuality quality;
-  std::string output;                        ///< the file written, or empty
-  double map_seconds = 0, judge_seconds = 0; ///< wall time
+  std::optional<StretchMeasure> stretch;                         ///< of the stretch map
+  std::vector<StretchRepeat> repeats;                            ///< of the stretch map, if they were asked for
+  std::string output;                                            ///< the file written, or empty
+  double map_seconds = 0, judge_seconds = 0, repeat_seconds = 0; ///< wall time
 };
 
 /// For people: the mesh, the method and its notes, a table of figures, the same in sentences.

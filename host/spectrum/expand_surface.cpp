@@ -131,6 +131,7 @@ SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const 
     found.faces_hit = samples.faces_hit;
     found.flipped_faces = samples.flipped_faces;
     found.folded_points = samples.folded_points;
+    found.exact_decisions = samples.exact_decisions;
     return surface_fields(sample_positions(samples, faces, vertices), grid, options.origin, options.signed_dphi);
   };
   return expand_surface(sampler, options, backend, monitor, report);

@@ -35,9 +35,10 @@ int surface_grid_degree(int lmax);
 /// What came of an expansion beside the coefficients.
 struct ExpandSurfaceReport {
   int rings = 0, ring_length = 0;
-  std::size_t faces_hit = 0;     ///< faces that any point of the grid lies in
-  std::size_t flipped_faces = 0; ///< faces of the map with det(a, b, c) < 0: nearly all if it is inside-out
-  std::size_t folded_points = 0; ///< points inside more than one triangle; 0 with closest_point
+  std::size_t faces_hit = 0;       ///< faces that any point of the grid lies in
+  std::size_t flipped_faces = 0;   ///< faces of the map with det(a, b, c) < 0: nearly all if it is inside-out
+  std::size_t folded_points = 0;   ///< points inside more than one triangle; 0 with closest_point
+  std::size_t exact_decisions = 0; ///< as in SphereSamples
   double sample_seconds = 0, analyse_seconds = 0; ///< wall time; the estimate of aliasing is in neither
   /// [degree][field]: norm sqrt(sum over m = -l ... l of |a_lm - a'_lm|^2), a' from the coarser grid. Fields of a mesh are
   /// not band-limited; this bounds what aliasing leaves in a as long as refining the grid lowers it. Empty if not asked for.
