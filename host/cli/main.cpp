@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
   cli::add_transform(app, common);
   cli::add_spectrum(app, common);
   cli::add_map(app, common);
+  cli::add_distance(app, common);
   cli::add_inspect(app, common);
   cli::add_devices(app, common);
   cli::add_render(app, common);
