@@ -111,7 +111,7 @@ SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, 
     };
     ExpandSurfaceOptions of_level = options;
     of_level.estimate_aliasing = false;
-    result.expansion = expand_surface(sampler, of_level, backend, monitor);
+    result.expansion = expand_surface(sampler, of_level, backend, monitor, &result.report);
     result.sheets.push_back(sheets);
     result.levels.push_back(result.expansion.coefficients);
     const double whole = std::sqrt(4 * std::numbers::pi);

@@ -34,6 +34,7 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
 /// Signed sheets at a time, on the mesh cut at its edges' midpoints 0 ... `refinements` times.
 struct SheetExpansion {
   SurfaceExpansion expansion; ///< extrapolated
+  ExpandSurfaceReport report; ///< of the finest
   /// [degree][field]: of the expansion, the largest over m. What the last two extrapolations differ by, and half the last
   /// refinement's change, whichever is more.
   std::vector<std::array<double, 6>> uncertainty;
