@@ -12,7 +12,7 @@
 #include "host/mesh/subdivide.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/expand_surface.hpp"
-#include "host/spectrum/paper_harmonic.hpp"
+#include "host/spectrum/paper_tables.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -24,8 +24,10 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/io", {"host", "host/map", "host/mesh", "host/spectrum"}},
     {"host/map", {"host", "host/mesh"}},
     {"host/spectrum", {"host", "host/mesh", "host/map", "host/plan", "host/reference"}},
-    {"host/report", {"host", "host/mesh", "host/map", "host/io", "host/spectrum"}},
-    {"host/cli", {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/report", "host/plan"}},
+    {"host/flow", {"host", "host/mesh", "host/map", "host/spectrum"}},
+    {"host/report", {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow"}},
+    {"host/cli",
+     {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/report", "host/plan"}},
 };
 
 struct Include {

@@ -173,4 +173,16 @@ with tempfile.TemporaryDirectory() as folder:
     assert [row["order"] for row in rebuilt["orders"]] == list(range(9)), "0 to 8 unless told otherwise"
     rebuilt["orders"][0]["distance"] = "far"
     refuses(reconstruct, rebuilt, "a distance in words")
-print("24 documents and 4 files passed")
+distance = load_schema("distance")
+with tempfile.TemporaryDirectory() as folder:
+    points = os.path.join(folder, "points.csv")
+    with open(points, "w", encoding="utf-8") as file:
+        file.write("x,y,z\n0,0,0\n3,0,0\n0.5,0.1,0\n")
+    for arguments in ([points], [points, "--unsigned"], ["--grid", "5"]):
+        report = output_of("distance", "builtin:box:1,1,1", *arguments, "--device", "cpu", "--json")
+        jsonschema.validate(report, distance)
+        assert ("grid" in report) is ("--grid" in arguments) and ("inside" in report) is report["signed"]
+    assert report["points"] == 125 and report["inside"] == 27 and report["outside"] == 98
+report["grid"]["counts"] = [1, 2]
+refuses(distance, report, "a grid of two axes")
+print("27 documents and 5 files passed")

@@ -1,4 +1,5 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/expand_flow.hpp"
 #include "host/cli/expand_surfaces.hpp"
 
 #include "host/clock.hpp"
@@ -20,6 +21,9 @@ struct Options {
   std::string recipe = "default";
   std::string map_file;
   bool aliasing = false;
+  std::string time = "auto", sheets = "level-set";
+  int refinements = FlowChoice{}.refinements;
+  bool flow_options = false;
   int lmax = 8;
   std::string origin = "com";
   double density = 1;
@@ -52,6 +56,22 @@ OriginChoice parse_origin(const std::string& text) {
   if (const auto point = parse_point(text)) return {"given", *point};
   throw Error(Fault::bad_argument,
               fmt::format("--origin {}: it must be com, mesh or three numbers X,Y,Z in mesh coordinates", text));
+}
+
+FlowChoice flow_choice(const Options& options, const ExpansionChoice& choice) {
+  if (options.flow_options && (choice.maps.empty() || choice.maps.back() != "flow"))
+    throw Error(Fault::bad_argument,
+                fmt::format("--time, --sheets and --refinements are about the flow, and --of {} does not ask for it; add "
+                            "--of flow",
+                            options.of));
+  FlowChoice flow;
+  flow.time = parse_flow_time(options.time);
+  flow.sheets = options.sheets == "signed";
+  flow.refinements = options.refinements;
+  if (choice.paper && (flow.time > 0 || flow.sheets))
+    throw Error(Fault::bad_argument, "--recipe paper sets the time, 0.2, and how folds are met: leave --time and "
+                                     "--sheets out");
+  return flow;
 }
 
 Verify parse_verify(const std::string& text) {
@@ -140,7 +160,8 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
 void run(const Options& options, Common& common) {
   Stopwatch watch;
   check_outputs(options);
-  const ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.map_file, options.lmax);
+  ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.map_file, options.lmax);
+  choice.flow = flow_choice(options, choice);
   const OriginChoice origin = parse_origin(options.origin);
   // Before long work: a result that cannot be written should fail now.
   std::vector<std::unique_ptr<AtomicFile>> files;
@@ -214,12 +235,14 @@ void add_expand(CLI::App& app, Common& common) {
   command
       ->add_option(
           "--of", options->of,
-          "What to expand, separated by commas: mass, and the surface over the maps harmonic, stretch, smooth; or all")
+          "What to expand, separated by commas: mass, and the surface over the maps harmonic, stretch, smooth and "
+          "the distance's flow; or all")
       ->capture_default_str();
   command
       ->add_option(
           "--recipe", options->recipe,
-          "Of the harmonic map: default, or paper (as Higher multipoles of the cow has it, about the mesh's origin)")
+          "Of the harmonic map and the flow: default, or paper (as Higher multipoles of the cow has them, about the "
+          "mesh's origin)")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
   command
@@ -227,6 +250,25 @@ void add_expand(CLI::App& app, Common& common) {
           "--map", options->map_file,
           "Take the map of --of from FILE.ply, which `cowgpu map MESH -o FILE.ply` wrote, instead of making it")
       ->type_name("FILE");
+  CLI::Option* time = command
+                          ->add_option("--time", options->time,
+                                       "flow: T, how far the body is inflated, in the mesh's length unit; auto: the least "
+                                       "for which it is star-shaped about the origin")
+                          ->type_name("auto|T")
+                          ->capture_default_str();
+  CLI::Option* sheets =
+      command
+          ->add_option("--sheets", options->sheets,
+                       "flow: level-set (from a direction back to the surface), or signed (all sheets of the flowed "
+                       "surface over it, each with its sign: any T, extrapolated over refinements of the mesh)")
+          ->check(CLI::IsMember({"level-set", "signed"}))
+          ->capture_default_str();
+  CLI::Option* refinements = command
+                                 ->add_option("--refinements", options->refinements,
+                                              "flow: of the mesh, for signed sheets; each takes four times as long")
+                                 ->check(CLI::Range(1, 5))
+                                 ->type_name("N")
+                                 ->capture_default_str();
   command->add_flag("--aliasing", options->aliasing,
                     "Estimate the aliasing of surface expansions, degree by degree (the paper's recipe always does)");
   command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
@@ -250,7 +292,10 @@ void add_expand(CLI::App& app, Common& common) {
       ->allow_extra_args(false);
   command->add_flag("--dry-run", options->dry_run, "Print the plan and the memory it needs, and stop");
   add_common_options(*command, common);
-  command->callback([options, &common] { run(*options, common); });
+  command->callback([options, &common, time, sheets, refinements] {
+    options->flow_options = time->count() + sheets->count() + refinements->count() > 0;
+    run(*options, common);
+  });
 }
 
 } // namespace cowgpu::cli

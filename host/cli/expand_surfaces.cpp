@@ -1,5 +1,6 @@
 #include "host/cli/expand_surfaces.hpp"
 
+#include "host/cli/expand_flow.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/file.hpp"
@@ -20,7 +21,7 @@
 namespace cowgpu::cli {
 namespace {
 
-constexpr std::array map_names = {"harmonic", "stretch", "smooth"};
+constexpr std::array map_names = {"harmonic", "stretch", "smooth", "flow"};
 
 SphereMap make_map(const std::string& method, bool paper, const ManifoldSurface& surface, Monitor& monitor) {
   if (method == "stretch") return stretch_map(surface, {}, monitor);
@@ -30,13 +31,20 @@ SphereMap make_map(const std::string& method, bool paper, const ManifoldSurface&
 
 SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choice, bool estimate_aliasing,
                           const Body& body, const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
-  const bool paper = choice.paper && method == "harmonic";
+  const bool paper = choice.paper && (method == "harmonic" || method == "flow");
   SurfaceResult result;
   result.recipe = paper ? "paper" : "default";
   result.origin_kind = paper ? "mesh" : body.origin_kind;
-  result.closest_point = paper;
   result.name = method;
   result.beside_paper = paper && choice.lmax >= 3 && body.surface.mesh().sha256 == benchmark_sha256;
+  const Vec3 origin = paper ? Vec3::Zero() : body.origin;
+  const int judged_degree = surface_grid_degree(choice.lmax) / 2;
+  if (method == "flow") {
+    expand_flow(choice, estimate_aliasing, surface, origin, backend, monitor, result);
+    result.quality = judge(surface, result.map, judged_degree);
+    return result;
+  }
+  result.closest_point = paper;
   const auto start = Clock::now();
   if (choice.map_file.empty())
     result.map = make_map(method, paper, surface, monitor);
@@ -47,10 +55,10 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
     result.map_sha256 = sha256_hex(std::string_view(bytes));
   }
   result.map_seconds = seconds_since(start);
-  result.quality = judge(surface, result.map, surface_grid_degree(choice.lmax) / 2);
+  result.quality = judge(surface, result.map, judged_degree);
   ExpandSurfaceOptions options;
   options.lmax = choice.lmax;
-  options.origin = paper ? Vec3::Zero() : body.origin;
+  options.origin = origin;
   options.closest_point = paper;
   options.signed_dphi = !paper;
   options.estimate_aliasing = estimate_aliasing || paper; // to say how far the paper is from converged values
@@ -81,22 +89,23 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
     else
       throw Error(
           Fault::bad_argument,
-          fmt::format("--of {}: there is no expansion \"{}\"; there are mass, harmonic, stretch, smooth and all, "
-                      "separated by commas",
+          fmt::format("--of {}: there is no expansion \"{}\"; there are mass, harmonic, stretch, smooth, flow and "
+                      "all, separated by commas",
                       of, word));
   }
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (wanted[i]) choice.maps.emplace_back(map_names[i]);
-  if (choice.paper && !wanted[0])
+  if (choice.paper && !wanted[0] && !wanted[3])
     throw Error(
         Fault::bad_argument,
-        fmt::format("--recipe paper is about the harmonic map, and --of {} does not ask for that; add --of harmonic",
+        fmt::format("--recipe paper is about the harmonic map and the flow, and --of {} asks for neither; add --of "
+                    "harmonic or --of flow",
                     of));
-  if (!map_file.empty() && choice.maps.size() != 1)
+  if (!map_file.empty() && (choice.maps.size() != 1 || wanted[3]))
     throw Error(Fault::bad_argument,
                 fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
                             "with --of harmonic, stretch or smooth",
-                            map_file, of, choice.maps.empty() ? "none" : "several"));
+                            map_file, of, choice.maps.empty() ? "none" : choice.maps.size() > 1 ? "several" : "the flow, which is no map in a file"));
   return choice;
 }
 
@@ -104,6 +113,11 @@ MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, c
   if (choice.maps.empty()) return {};
   MemoryNeed need = expand_surface_memory(faces, choice.lmax, backend);
   need.host += (choice.maps.size() - 1) * 6 * 16 * SphereCoefficients::count(choice.lmax);
+  if (choice.maps.back() == "flow") {
+    const MemoryNeed flow = expand_flow_memory(choice.flow, choice.paper, faces, backend);
+    need.host += flow.host;
+    need.device = std::max(need.device, flow.device);
+  }
   return need;
 }
 

@@ -10,17 +10,25 @@
 
 namespace cowgpu::cli {
 
+/// How the surface is expanded over the distance's flow.
+struct FlowChoice {
+  double time = 0;     ///< T > 0 in the mesh's length unit; 0: the least from which the inflated body is star-shaped
+  bool sheets = false; ///< signed sheets instead of the level set
+  int refinements = 3; ///< of the mesh, for sheets and the paper's recipe
+};
+
 /// What --of, --recipe and --lmax ask for.
 struct ExpansionChoice {
   bool mass = false;
-  std::vector<std::string> maps; ///< of "harmonic", "stretch", "smooth", in this order, each once
-  bool paper = false;            ///< the harmonic map by the paper's recipe
+  std::vector<std::string> maps; ///< of "harmonic", "stretch", "smooth", "flow", in this order, each once
+  bool paper = false;            ///< the harmonic map and the flow by the paper's recipe
   std::string map_file;          ///< a PLY file instead of making the one map, or empty
   int lmax = 0;
+  FlowChoice flow;
 };
 
 /// Reads the list `of` (commas; "all") and `recipe` ("default", "paper"). Throws Error(bad_argument) for a name that is
-/// none, for the paper's recipe without the harmonic map, and for a map file without just one map that it stands for.
+/// none, for the paper's recipe without the harmonic map or the flow, and for a map file without just one map that it stands for.
 ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, const std::string& map_file,
                                  int lmax);
 

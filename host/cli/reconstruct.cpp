@@ -240,7 +240,7 @@ void add_reconstruct(CLI::App& app, Common& common) {
       ->allow_extra_args(false);
   command
       ->add_option("--method,--of", options->source.of,
-                   "Of a mesh the map: stretch (default), harmonic or smooth; of a file the name of the expansion "
+                   "Of a mesh the map: stretch (default), harmonic, smooth or flow; of a file the name of the expansion "
                    "(stretch where there is one)")
       ->type_name("NAME");
   command

@@ -171,7 +171,7 @@ void add_render(CLI::App& app, Common& common) {
       ->allow_extra_args(false);
   command
       ->add_option("--of,--method", options->source.of,
-                   "With --order: the map (stretch, harmonic or smooth), or a file's expansion by name (stretch)")
+                   "With --order: the map (stretch, harmonic, smooth or flow), or a file's expansion by name (stretch)")
       ->type_name("NAME");
   command->add_option("--fields", options->fields, "With --order: xyz (default), or f: distance and angles")
       ->check(CLI::IsMember({"xyz", "f"}));

@@ -24,7 +24,7 @@ ExpansionChoice expansion_choice(const SurfaceChoice& choice, int largest_order)
   ExpansionChoice maps = parse_expansions(of, "default", "", lmax);
   if (maps.mass || maps.maps.size() != 1)
     throw Error(Fault::bad_argument,
-                fmt::format("--of {}: a body is rebuilt over one map: harmonic, stretch or smooth", of));
+                fmt::format("--of {}: a body is rebuilt over one map: harmonic, stretch, smooth or flow", of));
   return maps;
 }
 

@@ -2,7 +2,7 @@
 
 #include "host/io/number.hpp"
 #include "host/report/json_parts.hpp"
-#include "host/spectrum/paper_harmonic.hpp"
+#include "host/spectrum/paper_tables.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -18,7 +18,7 @@ ordered_json map_json(const SurfaceResult& result) {
     map["file"] = result.map_file;
     map["sha256"] = result.map_sha256;
   }
-  const ordered_json worth = {{"lookup", result.closest_point ? "closest point" : "ray"},
+  const ordered_json worth = {{"lookup", lookup_name(result)},
                               {"flipped", quality.flipped.size()},
                               {"flipped_area", quality.flipped_area},
                               {"flat", quality.flat.size()},
@@ -39,7 +39,7 @@ ordered_json rows_json(const std::vector<std::array<double, 6>>& degrees) {
 
 ordered_json paper_json(const SurfaceResult& result) {
   ordered_json rows = ordered_json::array();
-  for (const PaperRow& row : paper_harmonic_table()) {
+  for (const PaperRow& row : paper_table(result)) {
     ordered_json line = {row.l, row.m};
     for (const std::complex<double>& value : row.values) {
       line.push_back(value.real());
@@ -50,8 +50,8 @@ ordered_json paper_json(const SurfaceResult& result) {
   const auto within = converged_within(result);
   return {{"fields", {"f_r", "f_dtheta", "f_dphi"}},
           {"coefficients", rows},
-          {"misfits", paper_misfits(result.expansion)},
-          {"distances", paper_distances(result.expansion)},
+          {"misfits", paper_misfits(result.expansion, paper_table(result))},
+          {"distances", paper_distances(converged_expansion(result), paper_table(result))},
           {"converged_within", {within[0], within[1], within[2]}}};
 }
 
@@ -89,6 +89,7 @@ void write_surface_json(const SurfaceResult& result, const std::function<void(st
        {{"map", result.map_seconds},
         {"sample", result.report.sample_seconds},
         {"analyse", result.report.analyse_seconds}}}};
+  if (result.flow) head["flow"] = flow_json(*result.flow);
   if (result.beside_paper) head["paper"] = paper_json(result);
   sink(json_members(head) + ",\n \"coefficients\": [");
   std::string text;

@@ -2,10 +2,13 @@
 #pragma once
 
 #include "host/map/quality.hpp"
+#include "host/report/flow_result.hpp"
 #include "host/spectrum/expand_surface.hpp"
+#include "host/spectrum/paper_tables.hpp"
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +16,8 @@
 namespace cowgpu {
 
 struct SurfaceResult {
-  std::string name; ///< key among the expansions: "harmonic", "stretch" or "smooth"
-  SphereMap map;
+  std::string name; ///< key among the expansions: "harmonic", "stretch", "smooth" or "flow"
+  SphereMap map;    ///< of the flow: where the mesh's vertices come to, seen from the origin
   std::string map_file, map_sha256; ///< the file that the map was read from (method "file"), or empty
   std::string recipe;               ///< "default" or "paper"
   std::string origin_kind;          ///< as in Body
@@ -24,9 +27,19 @@ struct SurfaceResult {
   ExpandSurfaceReport report;
   MapQuality quality; ///< for the grid of the expansion
   double map_seconds = 0;
+  std::optional<FlowResult> flow; ///< of the flow
 };
 
-/// The largest estimate of aliasing among degrees 0 to 3, by field.
+/// How directions are looked up: "ray", "closest point", "level set" or "sheets".
+std::string lookup_name(const SurfaceResult& result);
+
+/// The paper's table of this map.
+std::span<const PaperRow> paper_table(const SurfaceResult& result);
+
+/// What the paper's recipe converges to: the flow's signed sheets, or the expansion itself.
+const SurfaceExpansion& converged_expansion(const SurfaceResult& result);
+
+/// The largest uncertainty of that among degrees 0 to 3, by field: the estimate of aliasing where there is no flow.
 std::array<double, 6> converged_within(const SurfaceResult& result);
 
 /// The member of `expansions` as text after data/schemas/cowgpu.result.v1.json, streamed.

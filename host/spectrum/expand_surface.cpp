@@ -4,72 +4,41 @@
 #include "host/error.hpp"
 #include "host/map/closest_point.hpp"
 #include "host/map/sample_fields.hpp"
-#include "host/parallel.hpp"
 #include "host/spectrum/power.hpp"
+#include "host/spectrum/surface_fields.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace cowgpu {
 namespace {
 
-constexpr int fields = 6;
+constexpr int fields = int(surface_field_names.size());
 
-void check(std::span<const Vec3> vertices, const SphereMap& map, const ExpandSurfaceOptions& options) {
+void check(const ExpandSurfaceOptions& options) {
   if (options.lmax < 0 || options.lmax > largest_surface_degree)
     throw Error(Fault::bad_argument,
                 fmt::format("surfaces are expanded to degree 0 to {}, not {}", largest_surface_degree, options.lmax));
+  if (options.grid_degree != 0 &&
+      (options.grid_degree < 2 * options.lmax || options.grid_degree > largest_grid_degree))
+    throw Error(Fault::bad_argument, fmt::format("a grid of degree {} is not what degree {} can be sampled on",
+                                                 options.grid_degree, options.lmax));
   if (!options.origin.allFinite()) throw Error(Fault::bad_argument, "the origin of an expansion must be finite");
-  if (map.positions.size() != vertices.size())
-    throw Error(Fault::bad_argument,
-                fmt::format("the map has {} positions and the mesh {} vertices: it is of another mesh",
-                            map.positions.size(), vertices.size()));
 }
 
-// In (-pi, pi], for differences of two azimuths from [-pi, pi] and [0, 2 pi).
-double wrapped(double angle) {
-  while (angle > std::numbers::pi) angle -= 2 * std::numbers::pi;
-  while (angle <= -std::numbers::pi) angle += 2 * std::numbers::pi;
-  return angle;
-}
-
-// All six fields on a grid, [field][ring][longitude], and the integral over the sphere of each squared.
-struct GridFields {
-  std::vector<double> values;
+// The integral over the sphere of each field squared.
+std::array<double, fields> squares_of(const std::vector<double>& values, const SphereGrid& grid) {
+  const auto length = std::size_t(grid.ring_length), n = grid.points();
   std::array<double, fields> squares{};
-};
-
-GridFields surface_fields(const std::vector<double>& positions, const SphereGrid& grid,
-                          const ExpandSurfaceOptions& options) {
-  const std::size_t n = grid.points(), length = std::size_t(grid.ring_length);
-  GridFields result{std::vector<double>(fields * n), {}};
-  std::vector<std::array<double, fields>> ring_squares(std::size_t(grid.rings));
-  parallel_for(0, std::size_t(grid.rings), [&](std::size_t ring, unsigned) {
-    std::array<double, fields> squares{};
-    for (std::size_t j = 0; j < length; ++j) {
-      const std::size_t p = ring * length + j;
-      const Vec3 at(positions[p], positions[n + p], positions[2 * n + p]), from_origin = at - options.origin;
-      std::array<double, fields> value{from_origin.norm(), 0, 0, at.x(), at.y(), at.z()};
-      if (value[0] > 0) {
-        const double theta = std::atan2(std::hypot(from_origin.x(), from_origin.y()), from_origin.z());
-        const double dphi = wrapped(std::atan2(from_origin.y(), from_origin.x()) - grid.phi(int(j)));
-        value[1] = theta - grid.theta[ring];
-        value[2] = options.signed_dphi ? dphi : std::abs(dphi);
-      }
-      for (std::size_t f = 0; f < fields; ++f) {
-        result.values[f * n + p] = value[f];
-        squares[f] += value[f] * value[f];
-      }
+  for (std::size_t f = 0; f < fields; ++f)
+    for (std::size_t ring = 0; ring < std::size_t(grid.rings); ++ring) {
+      double sum = 0;
+      for (std::size_t j = 0; j < length; ++j) sum += std::pow(values[f * n + ring * length + j], 2);
+      squares[f] += grid.weights[ring] * 2 * std::numbers::pi / double(length) * sum;
     }
-    ring_squares[ring] = squares;
-  });
-  for (std::size_t ring = 0; ring < ring_squares.size(); ++ring)
-    for (std::size_t f = 0; f < fields; ++f)
-      result.squares[f] += grid.weights[ring] * 2 * std::numbers::pi / double(length) * ring_squares[ring][f];
-  return result;
+  return squares;
 }
 
 // What the degrees above each leave out, from Parseval's equation.
@@ -89,27 +58,20 @@ std::vector<std::array<double, 6>> truncation_of(const SphereCoefficients& a,
   return rows;
 }
 
-SphereCoefficients expand_on(const SphereGrid& grid, std::span<const Vec3> vertices, std::span<const Face> faces,
-                             const SphereMap& map, const ExpandSurfaceOptions& options, Backend& backend,
-                             Monitor& monitor, ExpandSurfaceReport& report) {
+SphereCoefficients expand_on(const SphereGrid& grid, const SurfaceSampler& sampler, const ExpandSurfaceOptions& options,
+                             Backend& backend, Monitor& monitor, ExpandSurfaceReport& report) {
   const auto start = Clock::now();
-  GridFields on_grid;
-  {
-    const SphereSamples samples = options.closest_point ? closest_samples(map.positions, faces, grid, monitor)
-                                                        : backend.sample(map.positions, faces, grid, monitor);
-    report.rings = samples.rings;
-    report.ring_length = samples.ring_length;
-    report.faces_hit = samples.faces_hit;
-    report.flipped_faces = samples.flipped_faces;
-    report.folded_points = samples.folded_points;
-    report.exact_decisions = samples.exact_decisions;
-    on_grid = surface_fields(sample_positions(samples, faces, vertices), grid, options);
-  }
+  report.rings = grid.rings;
+  report.ring_length = grid.ring_length;
+  const std::vector<double> values = sampler(grid, report);
+  if (values.size() != std::size_t(fields) * grid.points())
+    throw Error(Fault::bad_argument,
+                fmt::format("{} values are no six fields on {} points", values.size(), grid.points()));
   report.sample_seconds = seconds_since(start);
   const auto sampled = Clock::now();
   SphereCoefficients coefficients(options.lmax, fields);
-  backend.sphere_transform(grid, options.lmax)->analyse(fields, on_grid.values, coefficients.values, monitor);
-  report.truncation = truncation_of(coefficients, on_grid.squares);
+  backend.sphere_transform(grid, options.lmax)->analyse(fields, values, coefficients.values, monitor);
+  report.truncation = truncation_of(coefficients, squares_of(values, grid));
   report.analyse_seconds = seconds_since(sampled);
   return coefficients;
 }
@@ -131,18 +93,17 @@ int surface_grid_degree(int lmax) {
   return std::max(2 * lmax, least_surface_grid_degree);
 }
 
-SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const Face> faces, const SphereMap& map,
-                                const ExpandSurfaceOptions& options, Backend& backend, Monitor& monitor,
-                                ExpandSurfaceReport* report) {
-  check(vertices, map, options);
+SurfaceExpansion expand_surface(const SurfaceSampler& sampler, const ExpandSurfaceOptions& options, Backend& backend,
+                                Monitor& monitor, ExpandSurfaceReport* report) {
+  check(options);
   ExpandSurfaceReport own;
   ExpandSurfaceReport& found = report ? *report : own;
   found = {};
   const auto on_grid = [&](int degree, ExpandSurfaceReport& to) {
-    return expand_on(make_grid(GridKind::gauss_legendre, degree), vertices, faces, map, options, backend, monitor, to);
+    return expand_on(make_grid(GridKind::gauss_legendre, degree), sampler, options, backend, monitor, to);
   };
   SurfaceExpansion expansion;
-  const int degree = surface_grid_degree(options.lmax);
+  const int degree = options.grid_degree > 0 ? options.grid_degree : surface_grid_degree(options.lmax);
   expansion.coefficients = on_grid(degree, found);
   if (options.estimate_aliasing) {
     ExpandSurfaceReport coarse;
@@ -158,6 +119,26 @@ SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const 
   expansion.mean_dtheta = take_mean(1);
   expansion.mean_dphi = take_mean(2);
   return expansion;
+}
+
+SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const Face> faces, const SphereMap& map,
+                                const ExpandSurfaceOptions& options, Backend& backend, Monitor& monitor,
+                                ExpandSurfaceReport* report) {
+  check(options);
+  if (map.positions.size() != vertices.size())
+    throw Error(Fault::bad_argument,
+                fmt::format("the map has {} positions and the mesh {} vertices: it is of another mesh",
+                            map.positions.size(), vertices.size()));
+  const auto sampler = [&](const SphereGrid& grid, ExpandSurfaceReport& found) {
+    const SphereSamples samples = options.closest_point ? closest_samples(map.positions, faces, grid, monitor)
+                                                        : backend.sample(map.positions, faces, grid, monitor);
+    found.faces_hit = samples.faces_hit;
+    found.flipped_faces = samples.flipped_faces;
+    found.folded_points = samples.folded_points;
+    found.exact_decisions = samples.exact_decisions;
+    return surface_fields(sample_positions(samples, faces, vertices), grid, options.origin, options.signed_dphi);
+  };
+  return expand_surface(sampler, options, backend, monitor, report);
 }
 
 MemoryNeed expand_surface_memory(std::uint64_t faces, int lmax, const Backend& backend) {

@@ -5,6 +5,7 @@
 #include "host/spectrum/reconstruct.hpp"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace cowgpu {
@@ -19,6 +20,7 @@ struct ExpandSurfaceOptions {
   /// (Backend::sample).
   bool closest_point = false;
   bool signed_dphi = true; ///< false: expand |f_dphi|, as the paper's table does
+  int grid_degree = 0; ///< of the grid sampled on, at least 2 lmax; 0: surface_grid_degree(lmax)
   /// Expand once more on the grid of half the degree, with a quarter of the points, for ExpandSurfaceReport::aliasing.
   bool estimate_aliasing = false;
 };
@@ -47,6 +49,17 @@ struct ExpandSurfaceReport {
   /// the grid's, so that this is the root mean square at its points; what is below 3e-8 of the whole is rounding.
   std::vector<std::array<double, 6>> truncation;
 };
+
+/// The values of all six fields on a grid, [field][ring][longitude], from any map (host/spectrum/surface_fields.hpp); it may
+/// say in the report what it met.
+using SurfaceSampler = std::function<std::vector<double>(const SphereGrid& grid, ExpandSurfaceReport& report)>;
+
+/// Samples on the Gauss-Legendre grid of surface_grid_degree(lmax), removes the mean of the two angles, and analyses all six fields to
+/// lmax. Of the options, closest_point is the sampler's business, and so are the origin and the sign, which are only noted.
+/// Throws Error(bad_argument) for lmax out of range or an origin that is not finite, and what the sampler and
+/// sphere_transform throw.
+SurfaceExpansion expand_surface(const SurfaceSampler& sampler, const ExpandSurfaceOptions& options, Backend& backend,
+                                Monitor& monitor, ExpandSurfaceReport* report = nullptr);
 
 /// Samples the map on the Gauss-Legendre grid of surface_grid_degree(lmax); interpolates the position F linearly in the triangles;
 /// forms f_r = |F - origin|, f_dtheta = theta(F - origin) - theta and f_dphi = phi(F - origin) - phi wrapped to (-pi, pi],

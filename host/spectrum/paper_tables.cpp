@@ -1,4 +1,4 @@
-#include "host/spectrum/paper_harmonic.hpp"
+#include "host/spectrum/paper_tables.hpp"
 
 #include "host/error.hpp"
 
@@ -8,7 +8,7 @@
 namespace cowgpu {
 namespace {
 
-constexpr PaperRow table[] = {
+constexpr PaperRow harmonic[] = {
     {0, 0, {{{0.5825, 0}, {0, 0}, {0, 0}}}},
     {1, 0, {{{-0.0996, 0}, {2.5793, 0}, {-0.4817, 0}}}},
     {1, 1, {{{0.0237, 0.0}, {-0.3161, 1.66}, {0.475, 0.4784}}}},
@@ -21,6 +21,19 @@ constexpr PaperRow table[] = {
     {3, 3, {{{-0.0083, -0.0094}, {-0.0272, 0.0286}, {-0.1859, 0.19}}}},
 };
 
+constexpr PaperRow flow[] = {
+    {0, 0, {{{1.075, 0}, {0, 0}, {0, 0}}}},
+    {1, 0, {{{0.001, 0}, {0.734, 0}, {0.0016, 0}}}},
+    {1, 1, {{{0.0567, 0.0145}, {-0.0008, 0.0045}, {0.0236, -0.0683}}}},
+    {2, 0, {{{-0.2681, 0}, {0.0051, 0}, {0.2863, 0}}}},
+    {2, 1, {{{-0.0007, -0.0006}, {-0.0085, 0.0474}, {0.0006, -0.0045}}}},
+    {2, 2, {{{0.1178, -0.0438}, {0.001, -0.0006}, {-0.1602, -0.0209}}}},
+    {3, 0, {{{0.0008, 0}, {-0.1178, 0}, {-0.0017, 0}}}},
+    {3, 1, {{{0.0182, -0.0307}, {-0.002, 0.0028}, {0.0542, -0.0645}}}},
+    {3, 2, {{{-0.0003, 0.0025}, {0.0489, 0.0091}, {0.0001, 0.0002}}}},
+    {3, 3, {{{0.0392, 0.0763}, {-0.001, -0.0011}, {-0.124, 0.0255}}}},
+};
+
 void check_degree(const SurfaceExpansion& expansion) {
   if (expansion.coefficients.lmax < 3)
     throw Error(Fault::bad_argument, "the paper's table goes to degree 3: expand to degree 3 at least");
@@ -29,10 +42,14 @@ void check_degree(const SurfaceExpansion& expansion) {
 } // namespace
 
 std::span<const PaperRow> paper_harmonic_table() {
-  return table;
+  return harmonic;
 }
 
-std::array<double, 3> paper_misfits(const SurfaceExpansion& expansion) {
+std::span<const PaperRow> paper_flow_table() {
+  return flow;
+}
+
+std::array<double, 3> paper_misfits(const SurfaceExpansion& expansion, std::span<const PaperRow> table) {
   check_degree(expansion);
   std::array<double, 3> misfits{};
   for (int f = 0; f < 3; ++f) {
@@ -49,7 +66,7 @@ std::array<double, 3> paper_misfits(const SurfaceExpansion& expansion) {
   return misfits;
 }
 
-std::array<double, 3> paper_distances(const SurfaceExpansion& expansion) {
+std::array<double, 3> paper_distances(const SurfaceExpansion& expansion, std::span<const PaperRow> table) {
   check_degree(expansion);
   std::array<double, 3> largest{};
   for (const PaperRow& row : table)

@@ -1,0 +1,164 @@
+#include "host/cli/expand_flow.hpp"
+
+#include "host/clock.hpp"
+#include "host/error.hpp"
+#include "host/mesh/geometry.hpp"
+#include "host/mesh/triangle_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace cowgpu::cli {
+namespace {
+
+constexpr double paper_time = 0.2;
+constexpr double sheet_tolerance = 1e-6;
+constexpr double star_tolerance = 1e-6; // in diagonals
+// Where the flow's sutures cut the fields, a grid's error falls slowly.
+constexpr int level_set_grid_degree = 1024;
+
+FlowPoints flow_vertices(const ManifoldSurface& surface, double time, Backend& backend, Monitor& monitor,
+                         FlowReport& report) {
+  const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), flow_threads(backend));
+  FlowOptions options;
+  options.time = time;
+  options.tolerance = sheet_tolerance;
+  return flow->flow(surface.vertices(), vertex_normals(surface.vertices(), surface.faces()), options, monitor, &report);
+}
+
+// Each meaning fills in flow, map, expansion and report.
+
+void level_set(double time, ExpandSurfaceOptions options, const ManifoldSurface& surface, Backend& backend,
+               Monitor& monitor, SurfaceResult& result) {
+  FlowResult& flow = *result.flow;
+  options.grid_degree = std::max(level_set_grid_degree, surface_grid_degree(options.lmax));
+  options.estimate_aliasing = true; // the uncertainty
+  LevelSetExpansion found = expand_level_set(surface.closed().mesh(), time, options, backend, monitor);
+  flow.time = found.time;
+  flow.star = found.star;
+  flow.level_set = found.level_set;
+  flow.uncertainty = found.report.aliasing;
+  result.expansion = std::move(found.expansion);
+  result.report = std::move(found.report);
+  const auto start = Clock::now();
+  const FlowPoints ends = flow_vertices(surface, flow.time, backend, monitor, flow.points);
+  result.map = direction_map(ends.positions, options.origin);
+  result.map_seconds = seconds_since(start);
+}
+
+SheetExpansion signed_sheets(const FlowChoice& choice, double time, const ExpandSurfaceOptions& options,
+                             const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
+  const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), flow_threads(backend));
+  return expand_sheets(surface.closed().mesh(), time, choice.refinements, sheet_tolerance, options, *flow, backend,
+                       monitor);
+}
+
+void sheets(const FlowChoice& choice, const ExpandSurfaceOptions& options, const ManifoldSurface& surface,
+            Backend& backend, Monitor& monitor, SurfaceResult& result) {
+  FlowResult& flow = *result.flow;
+  flow.star = find_star_shape_time(surface.closed().mesh(), options.origin, backend, monitor);
+  flow.time = flow_time(choice.time, flow.star);
+  SheetExpansion found = signed_sheets(choice, flow.time, options, surface, backend, monitor);
+  flow.points = found.flow;
+  flow.sheets = std::move(found.sheets);
+  flow.uncertainty = std::move(found.uncertainty);
+  result.expansion = std::move(found.expansion);
+  result.report = std::move(found.report);
+  const auto start = Clock::now();
+  FlowReport of_vertices;
+  result.map =
+      direction_map(flow_vertices(surface, flow.time, backend, monitor, of_vertices).positions, options.origin);
+  result.map_seconds = seconds_since(start);
+}
+
+void paper(const FlowChoice& choice, ExpandSurfaceOptions options, const ManifoldSurface& surface, Backend& backend,
+           Monitor& monitor, SurfaceResult& result) {
+  FlowResult& flow = *result.flow;
+  const RawMesh& mesh = surface.closed().mesh();
+  flow.time = paper_time;
+  flow.star = find_star_shape_time(mesh, options.origin, backend, monitor);
+  options.closest_point = true;
+  options.signed_dphi = false;
+  options.estimate_aliasing = true;
+  const auto start = Clock::now();
+  result.map = paper_flow_map(mesh, options.origin, backend, monitor, paper_time);
+  result.map_seconds = seconds_since(start);
+  result.closest_point = true;
+  result.expansion =
+      expand_surface(surface.vertices(), surface.faces(), result.map, options, backend, monitor, &result.report);
+  SheetExpansion found = signed_sheets(choice, flow.time, options, surface, backend, monitor);
+  flow.points = found.flow;
+  flow.sheets = std::move(found.sheets);
+  flow.converged = ConvergedTable{std::move(found.expansion), std::move(found.uncertainty)};
+}
+
+} // namespace
+
+void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const ManifoldSurface& surface,
+                 const Vec3& origin, Backend& backend, Monitor& monitor, SurfaceResult& result) {
+  FlowResult& flow = result.flow.emplace();
+  const FlowChoice& how = choice.flow;
+  flow.meaning = choice.paper ? "paper" : how.sheets ? "sheets" : "level-set";
+  flow.time_choice = choice.paper ? "paper" : how.time > 0 ? "given" : "auto";
+  ExpandSurfaceOptions options;
+  options.lmax = choice.lmax;
+  options.origin = origin;
+  options.estimate_aliasing = estimate_aliasing;
+  if (choice.paper)
+    paper(how, options, surface, backend, monitor, result);
+  else if (how.sheets)
+    sheets(how, options, surface, backend, monitor, result);
+  else
+    level_set(how.time, options, surface, backend, monitor, result);
+  if (flow.time < flow.star.upper) result.map.notes.push_back(star_shape_sentence(flow.star, flow.time));
+}
+
+MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_t faces, const Backend& backend) {
+  const std::uint64_t vertices = faces / 2 + 2;
+  if (!paper && !choice.sheets) {
+    // A grid of its own: positions, the six fields, and a batch of rays.
+    const std::uint64_t points = 2 * std::uint64_t(level_set_grid_degree + 1) * (level_set_grid_degree + 1);
+    MemoryNeed need = backend.distance_field_memory(vertices, faces, std::uint64_t(1) << 18);
+    need.host += points * 9 * sizeof(double);
+    return need;
+  }
+  // Paths and positions of the finest vertices, its faces, and caps of these.
+  const std::uint64_t times = std::uint64_t(1) << (2 * choice.refinements);
+  MemoryNeed need = backend.distance_field_memory(vertices, faces, vertices);
+  need.host += times * (vertices * 200 + faces * 120);
+  return need;
+}
+
+StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor) {
+  const Box box = bounding_box(mesh.vertices, mesh.faces);
+  return star_shape_time(mesh.vertices, mesh.faces, origin, star_tolerance * (box.max - box.min).norm(), backend,
+                         monitor);
+}
+
+double flow_time(double given, const StarShapeTime& star) {
+  if (given > 0) return given;
+  if (!std::isfinite(star.upper))
+    throw Error(Fault::map_failed, "no time was found from which the inflated body is star-shaped about this origin: "
+                                   "give one with --time, or take another origin");
+  return star.upper;
+}
+
+double parse_flow_time(const std::string& text) {
+  if (text == "auto") return 0;
+  double time = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, time);
+  if (read.ec != std::errc() || read.ptr != end || !std::isfinite(time) || !(time > 0))
+    throw Error(Fault::bad_argument,
+                fmt::format("--time {}: it must be auto or a number above 0, in the mesh's length unit", text));
+  return time;
+}
+
+unsigned flow_threads(const Backend& backend) {
+  return backend.facts().type == "cpu" ? backend.facts().threads : 0;
+}
+
+} // namespace cowgpu::cli

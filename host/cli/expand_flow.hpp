@@ -1,0 +1,30 @@
+// The expansion of `cowgpu expand --of flow`.
+#pragma once
+
+#include "host/cli/expand_surfaces.hpp"
+#include "host/mesh/closed_surface.hpp"
+
+namespace cowgpu::cli {
+
+/// Expands over the distance's flow by the meaning that `choice` asks for; name, recipe and origin's kind of the result
+/// are the caller's. Throws what host/flow/flow_map.hpp throws.
+void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const ManifoldSurface& surface,
+                 const Vec3& origin, Backend& backend, Monitor& monitor, SurfaceResult& result);
+
+/// What that needs at most beside what other maps need.
+MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_t faces, const Backend& backend);
+
+/// The star-shape time of a mesh about an origin, as precisely as every command takes it.
+StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor);
+
+/// The time a command flows for: the given one, or for 0 that bound of the star-shape time which is surely enough.
+/// Throws Error(map_failed) where none was found.
+double flow_time(double given, const StarShapeTime& star);
+
+/// Reads --time: "auto" (0), or a finite number above 0. Throws Error(bad_argument).
+double parse_flow_time(const std::string& text);
+
+/// Threads that the flow runs on where this backend does the rest.
+unsigned flow_threads(const Backend& backend);
+
+} // namespace cowgpu::cli

@@ -1,0 +1,102 @@
+// One point's way along the gradient of the distance, from event to event.
+//
+// State: the place x, the time t and the contacts: patches of the surface each of which has one nearest point, all equally
+// far from x. The velocity v is the vector of least norm in the convex hull of the unit vectors n_i from the contacts to x.
+//   1. Contacts farther than the nearest are dropped, those with the same nearest point joined.
+//   2. One contact: a straight ray up to the radius R of the largest empty ball that touches there (shrinking ball); then
+//      a second contact.
+//   3. More: x slides with the contacts frozen: straight at constant speed while all nearest points stay inside their
+//      triangles, else by Dormand and Prince with Newton steps back to equal distances.
+//   4. A nearer triangle at the end of a step: the time of the tie is bracketed with the contacts unchanged, the step
+//      shortened to it, and then the triangle is taken in: into a contact that has its nearest point there already (a
+//      hand-over), else as a new one.
+#pragma once
+
+#include "host/cpu/flow_surface.hpp"
+#include "host/flow.hpp"
+
+#include <array>
+
+namespace cowgpu::cpu {
+
+/// What a path came to.
+struct FlowEnd {
+  Vec3 position = Vec3::Zero();
+  double distance = 0;
+  std::uint32_t face = 0;
+  std::uint8_t flags = 0;
+  double slide_time = std::numeric_limits<double>::infinity();
+  Vec3 slide_place = Vec3::Zero();
+  std::uint32_t queries = 0, events = 0, steps = 0;
+};
+
+/// Corners of a path and their times, if asked for.
+struct FlowTrace {
+  std::vector<Vec3> places;
+  std::vector<double> times;
+};
+
+class FlowPath {
+public:
+  FlowPath(const FlowSurface& surface, double time, double tolerance, FlowTrace* trace = nullptr);
+
+  /// From a place, with `normal` zero, or from a surface point along its normal. `warm`: a face near it, or none.
+  FlowEnd run(const Vec3& start, const Vec3& normal, std::uint32_t warm);
+
+private:
+  static constexpr int most_contacts = 8, most_faces = 6;
+
+  struct Contact {
+    std::array<std::uint32_t, most_faces> faces{};
+    int count = 0;
+    void add(std::uint32_t face);
+  };
+  struct Contacts {
+    std::array<Contact, most_contacts> list{};
+    int count = 0;
+    void add(std::uint32_t face);
+  };
+  /// Contacts as seen from a place.
+  struct View {
+    std::array<Vec3, most_contacts> normals, points;
+    std::array<double, most_contacts> distances{}, weights{};
+    std::array<std::uint32_t, most_contacts> faces{};
+    std::array<bool, most_contacts> inside{};
+    Vec3 velocity;
+    double distance = 0; ///< the least
+    int count = 0;
+    bool active(int i) const { return weights[std::size_t(i)] > 1e-9; }
+    double active_distance() const;
+  };
+
+  double small(double length, double distance) const;
+  View look(const Vec3& x) const;
+  std::uint32_t nearest(const Vec3& x, std::uint32_t warm);
+  void tidy(View& view);
+  void ray(const View& view);
+  void ray(const Vec3& foot, const Vec3& normal, double distance, std::uint32_t face);
+  void slide(const View& view);
+  void restart();
+  void take_in(std::uint32_t face, const Vec3& place);
+  Vec3 advance(const View& from, double step, bool straight) const;
+  Vec3 slide_step(const Vec3& from, const Vec3& velocity, double step, double* error) const;
+  void balance(Vec3& x) const;
+  bool straight(const View& from, const Vec3& to) const;
+  double to_tie(const View& from, std::uint32_t face, double step, double gap, bool straight, Vec3& place);
+  void leave(const Vec3& start, const Vec3& normal, std::uint32_t warm);
+  bool come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32_t& face) const;
+  void record();
+
+  const FlowSurface& surface_;
+  const double time_, tolerance_, scale_, longest_;
+  FlowTrace* trace_;
+  FlowEnd end_;
+  Contacts contacts_;
+  Vec3 x_;
+  double t_ = 0, step_ = 0; ///< step_: what the error of the last slide allows; 0 if not known
+  std::uint32_t warm_ = 0;
+  bool inside_ = false; ///< it ended before it came out
+  int idle_ = 0;        ///< steps in turn that came nowhere
+};
+
+} // namespace cowgpu::cpu

@@ -1,0 +1,83 @@
+// The flow of the distance's gradient: nouns of the verb `flow`.
+//
+//   d x / dt = grad d(x),  d the distance from a body's surface, negative inside (winding number above 0).
+//
+// Outside, the curves are straight rays of unit speed until the nearest point is no longer one; from there they slide
+// along the medial axis with the generalised gradient, the vector of least norm in the convex hull of the unit vectors
+// from all nearest points (Lieutier, Computer-Aided Design 36 (2004) 1029). Lengths and times are in the mesh's unit.
+#pragma once
+
+#include "host/monitor.hpp"
+#include "host/types.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace cowgpu {
+
+struct FlowOptions {
+  double time = 0;         ///< t >= 0 to flow for
+  double tolerance = 1e-6; ///< error allowed per time on the medial axis, 1e-12 to 1e-2; rays are exact
+  /// Against the gradient, from outside: along the ray to the nearest surface point, and no further than it.
+  bool backward = false;
+  bool streamlines = false; ///< keep the corners of each path
+};
+
+/// What befell a point; bits of FlowPoints::flags.
+enum FlowFlag : std::uint8_t {
+  flow_slid = 1,        ///< reached the medial axis
+  flow_stationary = 2,  ///< ended where the generalised gradient is 0: it stays there for ever
+  flow_inside = 4,      ///< started inside the body: it came out by the nearest face that leads out
+  flow_restarted = 8,   ///< integrated again at a tighter tolerance
+  flow_unfinished = 16, ///< neither way came to the end: its position is where it got stuck
+  flow_surface = 32,    ///< backward: it reached the surface
+};
+
+/// One entry a start, in their order.
+struct FlowPoints {
+  std::vector<Vec3> positions;        ///< at the end
+  std::vector<double> distances;      ///< d there, signed
+  std::vector<std::uint32_t> faces;   ///< a nearest face there
+  std::vector<std::uint8_t> flags;    ///< of FlowFlag
+  std::vector<double> slide_times;    ///< of first reaching the medial axis; infinite if never
+  std::vector<Vec3> slide_places;     ///< where that was
+  std::vector<std::uint32_t> queries; ///< nearest-face queries spent
+  /// Path of start i: corners first[i] ... first[i + 1] - 1 of path and path_times. Empty if not asked for.
+  std::vector<std::size_t> first;
+  std::vector<Vec3> path;
+  std::vector<double> path_times;
+};
+
+/// Counts over all starts.
+struct FlowReport {
+  std::uint64_t points = 0, slid = 0, stationary = 0, inside = 0, restarted = 0, unfinished = 0;
+  std::uint64_t queries = 0, events = 0, steps = 0; ///< nearest faces asked for, changes of contacts, steps of slides
+  double first_slide = std::numeric_limits<double>::infinity(), median_slide = 0; ///< times of reaching the axis
+  Vec3 slide_low = Vec3::Zero(), slide_high = Vec3::Zero(); ///< box round the places where slides start
+  double seconds = 0;
+};
+
+/// A surface to flow off. Reading is safe from several threads.
+class DistanceFlow {
+public:
+  virtual ~DistanceFlow() = default;
+
+  /// Flows every start. `normals` is empty, or holds one vector a start: where it is not zero, the start lies on the
+  /// surface and leaves along it (unit length; angle-weighted at edges and vertices: at a convex one every direction of
+  /// the normal cone is a solution, at others the flow leaves what is not). Starts without one that lie on the surface
+  /// leave along a nearest face's normal. Backward takes no normals.
+  ///
+  /// Throws Error(bad_argument) for options out of range or starts that are not finite, interrupted. The same input gives
+  /// the same bits on any number of threads.
+  virtual FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
+                          Monitor& monitor, FlowReport* report = nullptr) const = 0;
+};
+
+/// The CPU path on `threads` threads (0: all): by events (host/cpu/flow_path.hpp). The surface must be closed.
+std::unique_ptr<DistanceFlow> make_cpu_flow(std::span<const Vec3> vertices, std::span<const Face> faces,
+                                            unsigned threads = 0);
+
+} // namespace cowgpu

@@ -1,0 +1,52 @@
+// Expansions of a surface over the map that the distance's flow makes of it.
+#pragma once
+
+#include "host/flow.hpp"
+#include "host/flow/level_set.hpp"
+#include "host/flow/sheets.hpp"
+#include "host/flow/star_shape.hpp"
+#include "host/mesh/raw_mesh.hpp"
+#include "host/spectrum/expand_surface.hpp"
+
+namespace cowgpu {
+
+/// The directions of flowed vertices from `origin`: method "flow". Throws Error(map_failed) for a vertex that came to the
+/// origin itself.
+SphereMap direction_map(std::span<const Vec3> positions, const Vec3& origin);
+
+/// The paper's recipe: the mesh's vertices along their normals for `time` in steps of 0.05 (host/flow/fixed_steps.hpp), seen
+/// from the origin. Expand with ExpandSurfaceOptions::closest_point and without signed_dphi.
+SphereMap paper_flow_map(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor,
+                         double time = 0.2);
+
+/// Expands the level set's map (host/flow/level_set.hpp); the options' closest_point means nothing here. `time` 0 takes the
+/// star-shape time's upper bound, found to 1e-6 of the diagonal.
+struct LevelSetExpansion {
+  SurfaceExpansion expansion;
+  ExpandSurfaceReport report;
+  LevelSetReport level_set;
+  StarShapeTime star; ///< looked for even where the time is given
+  double time = 0;    ///< T
+};
+LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const ExpandSurfaceOptions& options,
+                                   Backend& backend, Monitor& monitor);
+
+/// Signed sheets at a time, on the mesh cut at its edges' midpoints 0 ... `refinements` times.
+struct SheetExpansion {
+  SurfaceExpansion expansion; ///< extrapolated
+  ExpandSurfaceReport report; ///< of the finest
+  /// [degree][field]: of the expansion, the largest over m. What the last two extrapolations differ by, and half the last
+  /// refinement's change, whichever is more.
+  std::vector<std::array<double, 6>> uncertainty;
+  std::vector<SphereCoefficients> levels; ///< of each refinement, means of the angles included
+  std::vector<SheetReport> sheets;
+  FlowReport flow; ///< of the finest mesh's vertices, which hold those of the others
+};
+
+/// The sutures make the error fall by about half with each refinement, so a is extrapolated as 2 a_k - a_(k-1). The flow
+/// goes by events at `tolerance`. Throws Error(bad_argument) for refinements outside 1 ... 5 or time <= 0.
+SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, double tolerance,
+                             const ExpandSurfaceOptions& options, const DistanceFlow& flow, Backend& backend,
+                             Monitor& monitor);
+
+} // namespace cowgpu

@@ -1,0 +1,153 @@
+// The pieces of the distance flow as plain scalar code: the oracle, and in double what the CPU path uses for the rare cases.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace cowgpu::reference {
+
+template <class T>
+using Vector = Eigen::Matrix<T, 3, 1>;
+
+/// The point of least norm in the convex hull of `n` vectors, and the weights of the vectors in it: by trying every
+/// subset of up to three for the optimality condition v . n_j >= |v|^2. Returns false, and v = 0, if the hull holds the
+/// origin.
+template <class T>
+bool least_norm_in_hull(std::span<const Vector<T>> n, Vector<T>& v, std::span<T> weights, T slack = T(1e-10)) {
+  const std::size_t m = n.size();
+  for (T& w : weights) w = 0;
+  const auto optimal = [&](const Vector<T>& p) {
+    const T norm2 = p.squaredNorm();
+    for (const auto& other : n)
+      if (other.dot(p) < norm2 - slack) return false;
+    v = p;
+    return true;
+  };
+  for (std::size_t i = 0; i < m; ++i)
+    if (optimal(n[i])) return weights[i] = 1, true;
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = i + 1; j < m; ++j) {
+      const Vector<T> ij = n[j] - n[i];
+      const T length2 = ij.squaredNorm();
+      if (!(length2 > 0)) continue;
+      const T s = -n[i].dot(ij) / length2;
+      if (s < 0 || s > 1 || !optimal(n[i] + s * ij)) continue;
+      weights[i] = 1 - s;
+      weights[j] = s;
+      return v.squaredNorm() > slack * slack;
+    }
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = i + 1; j < m; ++j)
+      for (std::size_t k = j + 1; k < m; ++k) {
+        const Vector<T> a = n[j] - n[i], c = n[k] - n[i];
+        const T aa = a.squaredNorm(), cc = c.squaredNorm(), ac = a.dot(c), ra = -a.dot(n[i]), rc = -c.dot(n[i]);
+        const T determinant = aa * cc - ac * ac;
+        if (!(determinant > T(1e-18) * aa * cc)) continue;
+        const T s = (ra * cc - rc * ac) / determinant, t = (rc * aa - ra * ac) / determinant;
+        constexpr double margin = 1e-9;
+        if (s < -margin || t < -margin || s + t > 1 + margin || !optimal(n[i] + s * a + t * c)) continue;
+        weights[i] = 1 - s - t;
+        weights[j] = s;
+        weights[k] = t;
+        return v.squaredNorm() > slack * slack;
+      }
+  v.setZero();
+  return false;
+}
+
+/// Closest point of the triangle abc to p (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
+template <class T>
+Vector<T> closest_on_triangle(const Vector<T>& p, const Vector<T>& a, const Vector<T>& b, const Vector<T>& c) {
+  const auto on_segment = [&](const Vector<T>& from, const Vector<T>& to) -> Vector<T> {
+    const Vector<T> along = to - from;
+    const T length2 = along.squaredNorm();
+    T s = length2 > 0 ? (p - from).dot(along) / length2 : T(0);
+    s = s < 0 ? T(0) : s > 1 ? T(1) : s;
+    return from + s * along;
+  };
+  const Vector<T> n = (b - a).cross(c - a);
+  const auto left = [&](const Vector<T>& from, const Vector<T>& to) { return n.cross(to - from).dot(p - from) >= 0; };
+  if (n.squaredNorm() > 0 && left(a, b) && left(b, c) && left(c, a)) return p - n * (n.dot(p - a) / n.squaredNorm());
+  Vector<T> best = on_segment(a, b);
+  for (const Vector<T>& q : {on_segment(b, c), on_segment(c, a)})
+    if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
+  return best;
+}
+
+/// The closest point of a mesh, by looking at every face.
+template <class T>
+Vector<T> closest_on_mesh(std::span<const Eigen::Vector3d> vertices,
+                          std::span<const std::array<std::uint32_t, 3>> faces, const Vector<T>& p) {
+  Vector<T> best = Vector<T>::Zero();
+  T least = -1;
+  for (const auto& f : faces) {
+    const Vector<T> q =
+        closest_on_triangle<T>(p, vertices[f[0]].cast<T>(), vertices[f[1]].cast<T>(), vertices[f[2]].cast<T>());
+    const T d2 = (q - p).squaredNorm();
+    if (least < 0 || d2 < least) least = d2, best = q;
+  }
+  return best;
+}
+
+/// Radius of the largest ball that touches the plane through q with normal n there and has no other surface point inside,
+/// at most `limit`: R = |p - q|^2 / (2 (p - q) . n) for a point p inside (Ma, Bae and Choi, The Visual Computer 28 (2012)
+/// 7, the shrinking ball). `closest(c)` is the closest surface point to c; `slack(R)` how deep a point of a ball of radius R
+/// may lie and still count as on it; `touched`, if the ball touches, that point.
+template <class T, class Closest, class Slack>
+T shrinking_ball(const Vector<T>& q, const Vector<T>& n, T limit, const Slack& slack, const Closest& closest,
+                 Vector<T>* touched = nullptr) {
+  T radius = limit;
+  for (int step = 0; step < 100; ++step) {
+    const Vector<T> centre = q + radius * n, p = closest(centre), pq = p - q;
+    if ((p - centre).norm() >= radius - slack(radius)) break;
+    const T height = pq.dot(n);
+    if (!(height > 0)) break;
+    const T smaller = pq.squaredNorm() / (2 * height);
+    if (!(smaller < radius)) break;
+    radius = smaller;
+    if (touched) *touched = p;
+  }
+  return radius;
+}
+
+/// Steps of the classical fourth-order method for dx/dt = direction(x), from x over `time` in `steps` equal steps. The first
+/// step's first slope is `first` if that is not zero: on the surface the gradient has to be told.
+template <class T, class Direction>
+Vector<T> runge_kutta(Vector<T> x, T time, int steps, const Vector<T>& first, const Direction& direction) {
+  const T h = time / T(steps);
+  for (int i = 0; i < steps; ++i) {
+    const Vector<T> k1 = i == 0 && first.squaredNorm() > 0 ? first : direction(x), k2 = direction(x + h / 2 * k1),
+                    k3 = direction(x + h / 2 * k2), k4 = direction(x + h * k3);
+    x += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  return x;
+}
+
+/// One step of Dormand and Prince, J. Comput. Appl. Math. 6 (1980) 19: fifth order, with an estimate of the error of the
+/// embedded fourth-order result. `k1` is the slope at x.
+template <class T, class Direction>
+Vector<T> dormand_prince(const Vector<T>& x, T h, const Vector<T>& k1, const Direction& direction, T* error = nullptr) {
+  const Vector<T> k2 = direction(x + h / 5 * k1);
+  const Vector<T> k3 = direction(x + h * (k1 * T(3) / 40 + k2 * T(9) / 40));
+  const Vector<T> k4 = direction(x + h * (k1 * T(44) / 45 - k2 * T(56) / 15 + k3 * T(32) / 9));
+  const Vector<T> k5 =
+      direction(x + h * (k1 * T(19372) / 6561 - k2 * T(25360) / 2187 + k3 * T(64448) / 6561 - k4 * T(212) / 729));
+  const Vector<T> k6 = direction(x + h * (k1 * T(9017) / 3168 - k2 * T(355) / 33 + k3 * T(46732) / 5247 +
+                                          k4 * T(49) / 176 - k5 * T(5103) / 18656));
+  const Vector<T> y =
+      x + h * (k1 * T(35) / 384 + k3 * T(500) / 1113 + k4 * T(125) / 192 - k5 * T(2187) / 6784 + k6 * T(11) / 84);
+  if (error) {
+    const Vector<T> k7 = direction(y);
+    *error = (h * (k1 * T(71) / 57600 - k3 * T(71) / 16695 + k4 * T(71) / 1920 - k5 * T(17253) / 339200 +
+                   k6 * T(22) / 525 - k7 / T(40)))
+                 .norm();
+  }
+  return y;
+}
+
+} // namespace cowgpu::reference
