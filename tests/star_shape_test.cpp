@@ -44,12 +44,12 @@ TEST_CASE("across a gap between two boxes the time is sqrt 2 by the closed form"
   // From (2, 0, 0) in the right box: of the left one's upper edge, normals (cos a, sin a), the ball touches the right
   // one's edge at 1 / cos a, and sees the origin from behind below 3 cos a - sin a. Both are sqrt 2 at 45 degrees.
   const RawMesh mesh = together(box({2, 2, 2}, {1, -1, -1}), box({2, 2, 2}, {-3, -1, -1}));
-  const StarShapeTime time = find(mesh, {2, 0, 0}, 1e-7);
+  const StarShapeTime time = find(mesh, {2, 0, 0}, 1e-3);
   CAPTURE(time.regions, time.queries);
   CHECK(time.lower <= std::sqrt(2) + 1e-12);
   CHECK(time.upper >= std::sqrt(2) - 1e-12);
-  CHECK(time.upper - time.lower < 1.1e-7);
-  CHECK(time.normal.x() == Approx(std::sqrt(0.5)).margin(1e-5));
+  CHECK(time.upper - time.lower < 1.1e-3);
+  CHECK(time.normal.x() == Approx(std::sqrt(0.5)).margin(1e-3));
   CHECK((time.point + time.lower * time.normal - time.place).norm() < 1e-12);
 }
 

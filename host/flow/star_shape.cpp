@@ -201,19 +201,24 @@ void Search::look(const std::vector<Region>& regions, std::vector<Region>& waiti
   const ClosestPoints closest = field_->closest(centres, {}, monitor_);
   found_.queries += centres.size();
   std::vector<Region> left;
+  std::vector<double> short_of; // by how much a ball of this size does not fit at the middle
   for (std::size_t i = 0; i < open.size(); ++i) {
     const Ball q = round_points(*open[i]), n = round_normals(*open[i]);
     const double distance = std::abs(closest.distance[i]), reach = q.radius + level * n.radius;
     if (distance + reach < level - rounding) continue;                    // no ball of this size fits
     if (distance > reach + rounding && closest.winding[i] != 0) continue; // it fits inside the body
     left.push_back(*open[i]);
+    short_of.push_back(level - distance);
   }
   raise(left);
-  for (const Region& r : left) {
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const Region& r = left[i];
     const Ball q = round_points(r), n = round_normals(r);
     Region one = r, other = r;
-    // Where the level is low, normals decide, so they are cut first.
-    if (q.radius >= std::max(level, 0.1 * diagonal_) * n.radius)
+    // Cutting points can rule the rest out only if normals alone leave no room.
+    const double turn = level * n.radius;
+    const bool cut_normals = n.radius > 1e-10 && (short_of[i] <= turn || q.radius < turn);
+    if (!cut_normals)
       cut(
           r.points, r.point_count, [](const Vec3& a, const Vec3& b) { return Vec3((a + b) / 2); }, one.points,
           other.points);
@@ -236,7 +241,9 @@ void Search::raise(const std::vector<Region>& regions) {
   for (const Region& r : regions) {
     Try t{round_points(r).centre, round_normals(r).centre, 0};
     t.radius = behind(t.q, t.n);
-    if (t.radius > found_.lower) tries.push_back(t);
+    const auto& cone = cones_[r.cone];
+    const bool normal = std::all_of(cone.begin(), cone.end(), [&](const Vec3& along) { return along.dot(t.n) <= 0; });
+    if (normal && t.radius > found_.lower) tries.push_back(t);
   }
   for (int round = 0; round < 60 && !tries.empty(); ++round) {
     std::vector<Vec3> centres;
