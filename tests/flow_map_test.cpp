@@ -2,11 +2,13 @@
 
 #include "host/error.hpp"
 #include "host/flow/fixed_steps.hpp"
+#include "host/flow/sutures.hpp"
 #include "host/map/sample_fields.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
 #include "host/reference/flow.hpp"
 #include "host/spectrum/paper_harmonic.hpp"
+#include "host/spectrum/power.hpp"
 #include "host/spectrum/surface_fields.hpp"
 #include "host/sphere_directions.hpp"
 #include "tests/support/mapped_meshes.hpp"
@@ -193,4 +195,45 @@ TEST_CASE("signed sheets of the benchmark at 0.2 tend to a monopole of 1.092", "
   CHECK(found.sheets[0].flipped_faces > 1800);
   CHECK(found.expansion.coefficients.at(0, 0, 0).real() == Approx(1.092).margin(1e-3));
   CHECK(found.uncertainty[0][0] > 0);
+}
+
+TEST_CASE("a jump along the equator is one suture of length 2 pi, and slopes of powers are found", "[flow_map]") {
+  const SphereGrid grid = make_grid(GridKind::gauss_legendre, 31);
+  const std::size_t n = grid.points();
+  std::vector<double> positions(3 * n);
+  for (std::size_t p = 0; p < n; ++p)
+    positions[2 * n + p] = grid.theta[p / std::size_t(grid.ring_length)] < M_PI / 2 ? 1 : -0.5;
+  const SutureReport report = find_sutures(positions, grid, 0.1);
+  CHECK(report.pairs == std::uint64_t(grid.ring_length));
+  CHECK(report.cells == report.pairs);
+  CHECK(report.length == Approx(2 * M_PI).epsilon(2e-3)); // of the ring next to the equator
+  CHECK(report.largest == 1.5);
+  CHECK(find_sutures(positions, grid, 2).pairs == 0);
+  std::vector<double> falling(100, 1);
+  for (std::size_t l = 1; l < 100; ++l) falling[l] = double(2 * l + 1) * std::pow(double(l), -3);
+  CHECK(spectral_slope(falling, 10, 99) == Approx(-3).epsilon(1e-12));
+  CHECK_THROWS_AS(spectral_slope(falling, 10, 100), Error);
+  CHECK_THROWS_AS(find_sutures(positions, grid, 0), Error);
+}
+
+TEST_CASE("the benchmark's level set has sutures, and its coefficients fall no faster than jumps do",
+          "[flow_map][benchmark]") {
+  const auto cow = benchmark_cow();
+  if (!cow) return skip_without_cow();
+  const auto backend = make_cpu_backend();
+  Monitor monitor;
+  ExpandSurfaceOptions options;
+  options.lmax = 128;
+  const LevelSetExpansion found = expand_level_set(cow->mesh(), 0.242, options, *backend, monitor);
+  const double slope = spectral_slope(power(found.expansion.coefficients, 3), 16, 128);
+  const Box bounds = bounding_box(cow->vertices(), cow->faces());
+  const SphereGrid grid = make_grid(GridKind::gauss_legendre, 512);
+  const auto field = backend->distance_field(cow->vertices(), cow->faces());
+  const auto positions = level_set_positions(*field, bounds.min, bounds.max, Vec3::Zero(), 0.242, grid, monitor);
+  const SutureReport report = find_sutures(positions, grid, 0.05);
+  CAPTURE(slope, report.pairs, report.length, report.largest);
+             << report.phi);
+             CHECK(slope == Approx(-3).margin(0.3));
+             CHECK(report.largest > 0.3);
+             CHECK(report.length > 20);
 }
