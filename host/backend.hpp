@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/coefficients.hpp"
+#include "host/distance_field.hpp"
 #include "host/image.hpp"
 #include "host/kernel_time.hpp"
 #include "host/monitor.hpp"
@@ -100,6 +101,15 @@ public:
 
   /// Upper bound of the memory sample() allocates for so many faces, its result included.
   virtual MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const = 0;
+
+  /// The verb `closest` on a triangle surface, which is copied: trees are built here. Throws what check_distance_surface
+  /// throws, too_large. On Vulkan devices the CPU path does it so far.
+  virtual std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices,
+                                                        std::span<const Face> faces) = 0;
+
+  /// Upper bound of the memory a field and a call of closest() with so many queries allocate, its result included.
+  virtual MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces,
+                                           std::uint64_t queries) const = 0;
 
   /// The scene as a picture: smooth or flat shading, light from the upper left, the light of sky and ground where the
   /// surroundings let it through, edges with 16 samples a pixel. The same scene gives the same picture on any number of

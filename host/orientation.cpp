@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace cowgpu {
@@ -43,23 +44,14 @@ Product product(const Scaled& x, const Scaled& y, const Scaled& z, int sign) {
   return p;
 }
 
-} // namespace
-
-int orientation_exact(const Vec3& a, const Vec3& b, const Vec3& c) {
-  Scaled x[3], y[3], z[3];
-  for (int i = 0; i < 3; ++i) x[i] = scaled(a[i]), y[i] = scaled(b[i]), z[i] = scaled(c[i]);
-  Product products[6];
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    products[2 * i] = product(x[i], y[j], z[k], 1);
-    products[2 * i + 1] = product(x[i], y[k], z[j], -1);
-  }
+// The sign of a sum of at most 24 products.
+int sign_of_sum(std::span<const Product> products) {
   int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
   for (const Product& p : products)
     if (p.sign != 0) lowest = std::min(lowest, p.exponent), highest = std::max(highest, p.exponent);
   if (lowest > highest) return 0;
 
-  // Digit d of the sum has the weight 2^(lowest + 32 d). A digit gathers at most twelve terms below 2^32.
+  // Digit d of the sum has the weight 2^(lowest + 32 d). A digit gathers at most 48 terms below 2^32.
   std::vector<std::int64_t> sum(std::size_t(highest - lowest) / 32 + 7, 0);
   for (const Product& p : products) {
     if (p.sign == 0) continue;
@@ -79,6 +71,25 @@ int orientation_exact(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::any_of(sum.begin(), sum.end(), [](std::int64_t digit) { return digit != 0; }) ? 1 : 0;
 }
 
+// The six products of sign * det(a, b, c).
+void add_determinant(const Vec3& a, const Vec3& b, const Vec3& c, int sign, Product* products) {
+  Scaled x[3], y[3], z[3];
+  for (int i = 0; i < 3; ++i) x[i] = scaled(a[i]), y[i] = scaled(b[i]), z[i] = scaled(c[i]);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    products[2 * i] = product(x[i], y[j], z[k], sign);
+    products[2 * i + 1] = product(x[i], y[k], z[j], -sign);
+  }
+}
+
+} // namespace
+
+int orientation_exact(const Vec3& a, const Vec3& b, const Vec3& c) {
+  Product products[6];
+  add_determinant(a, b, c, 1, products);
+  return sign_of_sum(products);
+}
+
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c) {
   double determinant = 0, permanent = 0, size = 1;
   for (int i = 0; i < 3; ++i) {
@@ -94,6 +105,33 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c) {
   if (determinant > bound) return 1;
   if (-determinant > bound) return -1;
   return orientation_exact(a, b, c);
+}
+
+int side_of_plane_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  // Along the column of ones of the determinant of (a, 1), (b, 1), (c, 1), (p, 1).
+  Product products[24];
+  add_determinant(a, b, c, 1, products);
+  add_determinant(p, b, c, -1, products + 6);
+  add_determinant(p, c, a, -1, products + 12);
+  add_determinant(p, a, b, -1, products + 18);
+  return sign_of_sum(products);
+}
+
+int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  const Vec3 x = a - p, y = b - p, z = c - p;
+  double determinant = 0, permanent = 0, size = 1;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double u = y[j] * z[k], v = y[k] * z[j];
+    determinant += x[i] * (u - v);
+    permanent += std::abs(x[i]) * (std::abs(u) + std::abs(v));
+    size += std::abs(x[i]);
+  }
+  // As in orientation(), and three more roundings of a term: those of its differences.
+  const double bound = 0x1p-49 * permanent + 0x1p-1060 * size;
+  if (determinant > bound) return 1;
+  if (-determinant > bound) return -1;
+  return side_of_plane_exact(a, b, c, p);
 }
 
 } // namespace cowgpu

@@ -1,4 +1,4 @@
-// On which side of a plane through the origin a point lies, exactly.
+// On which side of a plane a point lies, exactly.
 #pragma once
 
 #include "host/types.hpp"
@@ -16,5 +16,12 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// The same without the error bound: always by integers, some six times slower.
 int orientation_exact(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The sign of det(a - p, b - p, c - p), exact in the same way: 1 if p is on the side of the plane through a, b, c from
+/// which they run clockwise (behind a face), -1 if it is in front, 0 if it is in the plane. Differences must not overflow.
+int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
+
+/// The same without the error bound.
+int side_of_plane_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
 
 } // namespace cowgpu

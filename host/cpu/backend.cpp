@@ -1,6 +1,7 @@
 // The CPU path: the verbs of host/backend.hpp on this machine's cores.
 #include "host/backend.hpp"
 
+#include "host/cpu/closest.hpp"
 #include "host/cpu/moments.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/cpu/peak.hpp"
@@ -56,6 +57,12 @@ public:
   }
   MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const override {
     return {cpu::sample_bytes(faces, grid), 0};
+  }
+  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces) override {
+    return cpu::distance_field(vertices, faces, threads_);
+  }
+  MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) const override {
+    return {cpu::distance_field_bytes(vertices, faces, queries), 0};
   }
   Image render(const RenderScene& scene, Monitor& monitor) override { return cpu::render(scene, threads_, monitor); }
   double measured_peak() override { return cpu::peak(threads_); }

@@ -62,6 +62,15 @@ public:
     return gpu::sample_memory(gpu_->facts(), faces, grid);
   }
 
+  // No kernel of its own so far.
+  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces) override {
+    return make_cpu_backend()->distance_field(vertices, faces);
+  }
+
+  MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) const override {
+    return make_cpu_backend()->distance_field_memory(vertices, faces, queries);
+  }
+
   Image render(const RenderScene& scene, Monitor& monitor) override {
     return make_cpu_backend()->render(scene, monitor); // no kernel of its own so far
   }
