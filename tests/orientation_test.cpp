@@ -3,6 +3,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -89,4 +90,35 @@ TEST_CASE("orientation neither underflows nor overflows", "[orientation]") {
   check_triple({least, 0, 0}, {0, least, 0}, {0, 0, least});
   check_triple({most, 0, 0}, {0, -most, 0}, {0, 0, most});
   check_triple({most, most, least}, {most, most, 0}, {most, least, most});
+}
+
+TEST_CASE("the side of a plane is that of rational arithmetic, for points in it and next to it", "[orientation]") {
+  using Rational = boost::multiprecision::cpp_rational;
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto vector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  int seen[3] = {};
+  for (int i = 0; i < 3000; ++i) {
+    Vec3 a = vector(), b = vector(), c = vector();
+    if (i % 3 == 0) // coordinates of few bits, so that planes hold points exactly
+      for (Vec3* v : {&a, &b, &c})
+        for (int k = 0; k < 3; ++k) (*v)[k] = std::round(4 * (*v)[k]);
+    const double u = i % 3 ? uniform(random) : std::round(2 * uniform(random)), w = i % 2 ? 0.5 : 2;
+    Vec3 p = a + u * (b - a) + w * (c - a);
+    if (i % 5 == 0) p[i % 3] = std::nextafter(p[i % 3], 2.0);
+    Rational d[3][3], sum = 0;
+    const Vec3* corners[3] = {&a, &b, &c};
+    for (int row = 0; row < 3; ++row)
+      for (int k = 0; k < 3; ++k) d[row][k] = Rational((*corners[row])[k]) - Rational(p[k]);
+    for (int k = 0; k < 3; ++k) {
+      const int m = (k + 1) % 3, n = (k + 2) % 3;
+      sum += d[0][k] * (d[1][m] * d[2][n] - d[1][n] * d[2][m]);
+    }
+    const int sign = sum.sign();
+    REQUIRE(side_of_plane(a, b, c, p) == sign);
+    REQUIRE(side_of_plane_exact(a, b, c, p) == sign);
+    REQUIRE(side_of_plane(b, a, c, p) == -sign);
+    ++seen[sign + 1];
+  }
+  CHECK(std::min({seen[0], seen[1], seen[2]}) > 300);
 }

@@ -23,9 +23,9 @@ bool is_far(const plan::ClosestTree& tree, const Vec3& p) {
 }
 
 // Balls about two queries that reach the surface hold no face inside. Where they overlap, the winding numbers are equal.
-bool same_winding(const Vec3& p, double p_distance, const Vec3& q, double q_distance) {
-  const double reach = p_distance + q_distance, size = p.cwiseAbs().maxCoeff() + q.cwiseAbs().maxCoeff();
-  return (p - q).norm() < reach * (1 - 1e-12) - 1e-13 * size;
+// `extent` of the surface, by which distances are rounded.
+bool same_winding(const Vec3& p, double p_distance, const Vec3& q, double q_distance, double extent) {
+  return (p - q).norm() < (p_distance + q_distance) * (1 - 1e-12) - 1e-13 * extent;
 }
 
 class CpuDistanceField final : public DistanceField {
@@ -103,12 +103,13 @@ private:
   std::uint64_t set_signs(std::span<const Vec3> points, const double* distances, std::span<const std::uint32_t> ids,
                           ClosestPoints& result) const {
     constexpr std::size_t neighbours = 4;
+    const double extent = 2 / tree_.scale;
     std::uint64_t rays = 0;
     std::array<int, together> winding;
     for (std::size_t i = 0; i < ids.size(); ++i) {
       std::size_t near = i;
       for (std::size_t j = i; j > 0 && i - j < neighbours; --j)
-        if (same_winding(points[j - 1], distances[j - 1], points[i], distances[i])) {
+        if (same_winding(points[j - 1], distances[j - 1], points[i], distances[i], extent)) {
           near = j - 1;
           break;
         }
@@ -151,10 +152,14 @@ std::uint64_t distance_field_bytes(std::uint64_t vertices, std::uint64_t faces, 
 
 std::optional<SurfacePoint> closest_point(const plan::ClosestTree& tree, const Vec3& query, double below,
                                           std::uint32_t warm_face) {
+  // The search counts by squares, whose rounding must not decide.
+  const double wider = below + 1e-15 * (tree.size + query.cwiseAbs().maxCoeff());
   const std::uint32_t face =
-      closest_single(tree, query, below, warm_face == no_face ? no_face : tree.slot_of_face[warm_face]);
+      closest_single(tree, query, wider, warm_face == no_face ? no_face : tree.slot_of_face[warm_face]);
   if (face == no_face) return std::nullopt;
-  return tree.on_face(face, query);
+  const SurfacePoint found = tree.on_face(face, query);
+  if (!(found.distance < below)) return std::nullopt;
+  return found;
 }
 
 int winding_number(const plan::ClosestTree& tree, const Vec3& query) {

@@ -335,6 +335,7 @@ ClosestTree::ClosestTree(std::span<const Vec3> mesh_vertices, std::span<const Fa
       low = low.cwiseMin(vertices[v]);
       high = high.cwiseMax(vertices[v]);
     }
+  size = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
   centre = low / 2 + high / 2;
   const double half = (high / 2 - low / 2).maxCoeff();
   scale = half > 0 ? 1 / half : 1;
@@ -358,10 +359,13 @@ SurfacePoint ClosestTree::on_face(std::uint32_t face, const Vec3& p) const {
   const double x = dot(t.u, r), y = dot(t.v, r), z = dot(t.n, r);
   const std::uint32_t corner[3] = {t.corner, (t.corner + 1) % 3, (t.corner + 2) % 3};
 
+  // What rounding cannot tell from an edge or a vertex counts as one, so that neighbours agree.
+  const double rounding = 1e-16 * (t.length + std::abs(x) + std::abs(y) + std::abs(z));
   SurfacePoint result;
-  if (y > 0 && t.cx * y - t.cy * x < 0 && t.ex * y - t.ey * (x - t.length) > 0) {
+  if (y > rounding && t.cy * x - t.cx * y > rounding * (t.cx + t.cy) &&
+      t.ex * y - t.ey * (x - t.length) > rounding * (t.ey - t.ex)) {
     const double wc = std::min(1.0, y / t.cy), wb = std::clamp((x - wc * t.cx) / t.length, 0.0, 1.0 - wc);
-    result.barycentric[int(corner[0])] = 1 - wb - wc;
+    result.barycentric[int(corner[0])] = std::max(0.0, 1 - wb - wc);
     result.barycentric[int(corner[1])] = wb;
     result.barycentric[int(corner[2])] = wc;
     result.face = face;
@@ -382,6 +386,8 @@ SurfacePoint ClosestTree::on_face(std::uint32_t face, const Vec3& p) const {
   const double e2 = (xb - se * t.ex) * (xb - se * t.ex) + (y - se * t.ey) * (y - se * t.ey);
   if (e2 < least) least = e2, edge = 1, s = se;
 
+  const double edge_length =
+      edge == 0 ? t.length : std::sqrt(edge == 1 ? t.ex * t.ex + t.ey * t.ey : t.cx * t.cx + t.cy * t.cy);
   const std::uint32_t from = corner[edge], to = corner[(edge + 1) % 3];
   const std::uint32_t v = faces[face][from], w = faces[face][to];
   const auto at_vertex = [&](std::uint32_t vertex) {
@@ -392,9 +398,9 @@ SurfacePoint ClosestTree::on_face(std::uint32_t face, const Vec3& p) const {
     result.barycentric[int(std::find(f.begin(), f.end(), vertex) - f.begin())] = 1;
     result.distance = (p - result.point).norm();
   };
-  if (s <= 0 || v == w) {
+  if (s * edge_length <= rounding || v == w) {
     at_vertex(v);
-  } else if (s >= 1) {
+  } else if ((1 - s) * edge_length <= rounding) {
     at_vertex(w);
   } else {
     result.feature = {SurfaceFeature::Kind::edge, std::min(v, w), std::max(v, w)};

@@ -77,6 +77,7 @@ struct ClosestTree {
   std::vector<Face> faces;
   Vec3 low, high;      ///< of the vertices in use
   Vec3 centre;         ///< of that box
+  double size = 0;     ///< largest |coordinate| in use
   double scale = 1;    ///< 1 / half its longest side
   bool closed = false; ///< every edge is run as often one way as the other
 

@@ -36,8 +36,8 @@ Point<T> cross(const Point<T>& a, const Point<T>& b) {
 
 template <class T>
 struct Closest {
-  T distance2 = T(-1); ///< squared; -1: none so far
-  Point<T> point{};
+  T distance2 = T(-1);          ///< squared; -1: none so far
+  Point<T> offset{};            ///< of the point from the query
   std::uint32_t face = no_face; ///< of several at the same distance the least
   SurfaceFeature feature;
 };
@@ -46,17 +46,17 @@ struct Closest {
 template <class T>
 void take_face(std::span<const Vec3> vertices, std::span<const Face> faces, std::uint32_t f, const Point<T>& p,
                Closest<T>& best) {
+  // Everything relative to the query.
   const auto take = [&](const Point<T>& q, const SurfaceFeature& feature) {
-    const Point<T> r = minus(p, q);
-    const T d2 = dot(r, r);
+    const T d2 = dot(q, q);
     if (best.face == no_face || d2 < best.distance2) best = {d2, q, f, feature};
   };
   Point<T> corner[3];
-  for (std::size_t k = 0; k < 3; ++k) corner[k] = point_of<T>(vertices[faces[f][k]]);
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = minus(point_of<T>(vertices[faces[f][k]]), p);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t v = faces[f][k], w = faces[f][(k + 1) % 3];
     const Point<T>&a = corner[k], e = minus(corner[(k + 1) % 3], a);
-    const T length2 = dot(e, e), along = dot(minus(p, a), e);
+    const T length2 = dot(e, e), along = -dot(a, e);
     if (length2 == 0 || along <= 0)
       take(a, {SurfaceFeature::Kind::vertex, v, v});
     else if (along < length2)
@@ -66,8 +66,8 @@ void take_face(std::span<const Vec3> vertices, std::span<const Face> faces, std:
   const Point<T> n = cross(minus(corner[1], corner[0]), minus(corner[2], corner[0]));
   const T n2 = dot(n, n);
   if (n2 == 0) return;
-  const T height = dot(minus(p, corner[0]), n) / n2;
-  const Point<T> q = {p[0] - height * n[0], p[1] - height * n[1], p[2] - height * n[2]};
+  const T height = dot(corner[0], n) / n2;
+  const Point<T> q = {height * n[0], height * n[1], height * n[2]};
   for (std::size_t k = 0; k < 3; ++k)
     if (dot(cross(minus(corner[(k + 1) % 3], corner[k]), minus(q, corner[k])), n) < 0) return;
   take(q, {SurfaceFeature::Kind::face, f, f});
