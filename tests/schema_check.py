@@ -140,4 +140,17 @@ for arguments in (
     assert sum(part["triangles"] for part in quality["unseen"]["parts"]) == quality["unseen"]["count"]
 judged["method"] = "guess"
 refuses(sphere_map, judged, "a method that is none")
-print("18 documents and 2 files passed")
+
+distance = load_schema("distance")
+with tempfile.TemporaryDirectory() as folder:
+    points = os.path.join(folder, "points.csv")
+    with open(points, "w", encoding="utf-8") as file:
+        file.write("x,y,z\n0,0,0\n3,0,0\n0.5,0.1,0\n")
+    for arguments in ([points], [points, "--unsigned"], ["--grid", "5"]):
+        report = output_of("distance", "builtin:box:1,1,1", *arguments, "--device", "cpu", "--json")
+        jsonschema.validate(report, distance)
+        assert ("grid" in report) is ("--grid" in arguments) and ("inside" in report) is report["signed"]
+    assert report["points"] == 125 and report["inside"] == 27 and report["outside"] == 98
+report["grid"]["counts"] = [1, 2]
+refuses(distance, report, "a grid of two axes")
+print("21 documents and 2 files passed")
