@@ -18,7 +18,7 @@ constexpr std::uint64_t node_bytes = 16 * CLOSEST_NODE_TEXELS, triangle_bytes = 
 constexpr std::uint64_t query_bytes = 12 * closest_queries;
 constexpr float unreachable = 1e30F;
 
-static_assert(closest_left == CLOSEST_LEFT);
+static_assert(closest_left == CLOSEST_LEFT && most_closest_candidates == CLOSEST_LIST);
 static_assert(sizeof(ClosestLane) == 8 && sizeof(ClosestCandidate) == 4);
 
 // Steps that fit in the budget. Invocations that run in step take as long as the slowest of them: in every step a loop over
@@ -52,10 +52,11 @@ Closest::Closest(Device& device, const ClosestInput& input) : device_(device), m
   const std::uint64_t triangles = input.triangles.size_bytes() / triangle_bytes;
   const std::uint64_t texels = std::max(input.triangles.size_bytes(), input.nodes.size_bytes()) / 16;
   if (triangles >> CLOSEST_TRIANGLE_BITS || texels > device.limits().maxTexelBufferElements)
-    throw Error(Failure::out_of_range, 0,
-                fmt::format("a tree over {} triangles is more than the device {} searches, which reads {} texels from a "
-                            "buffer; use --device cpu",
-                            triangles, device.name(), device.limits().maxTexelBufferElements));
+    throw Error(
+        Failure::out_of_range, 0,
+        fmt::format("a tree over {} triangles is more than the device {} searches, which reads {} texels from a "
+                    "buffer; use --device cpu",
+                    triangles, device.name(), device.limits().maxTexelBufferElements));
   steps_ = steps_within(input.iteration_budget, device.physical().subgroup_size);
   if (steps_ < CLOSEST_STACK)
     throw Error(Failure::out_of_range, 0,
@@ -101,13 +102,14 @@ void Closest::search() {
   batch_->found.receive();
   batch_->candidates.receive();
   const auto found = lanes();
-  const auto cut = std::count_if(found.begin(), found.end(),
-                                 [](const ClosestLane& lane) { return lane.candidates == CLOSEST_CUT; });
+  const auto cut =
+      std::count_if(found.begin(), found.end(), [](const ClosestLane& lane) { return lane.candidates == CLOSEST_CUT; });
   if (cut > 0)
-    throw Error(Failure::cut_short, 0,
-                fmt::format("the device {} ended a loop early: {} of {} searches were not finished; the result would be "
-                            "wrong; use --device cpu and report this",
-                            device_.name(), cut, lanes_));
+    throw Error(
+        Failure::cut_short, 0,
+        fmt::format("the device {} ended a loop early: {} of {} searches were not finished; the result would be "
+                    "wrong; use --device cpu and report this",
+                    device_.name(), cut, lanes_));
 }
 
 std::span<const ClosestLane> Closest::lanes() {

@@ -30,6 +30,7 @@ struct ClosestLane {
   std::uint32_t candidates; ///< or closest_left: the lane gave up
 };
 inline constexpr std::uint32_t closest_left = 0xfffffffeU;
+inline constexpr std::size_t most_closest_candidates = 64;
 
 /// A candidate: the triangle, and by bits the lane's queries it is one for.
 struct ClosestCandidate {
