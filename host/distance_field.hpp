@@ -82,7 +82,7 @@ public:
 
   /// Throws Error(bad_argument) for a query with a coordinate that is not finite or beyond 1e100, mesh_open for a signed
   /// distance from a surface whose edges are not run as often one way as the other, too_large, device_failed, device_lost,
-  /// interrupted. Takes 84 bytes a query for the result and 16 for the order.
+  /// interrupted. Takes 76 bytes a query for the result and 20 for the order.
   virtual ClosestPoints closest(std::span<const Vec3> queries, const ClosestOptions& options, Monitor& monitor,
                                 ClosestReport* report = nullptr) = 0;
 };

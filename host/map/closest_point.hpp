@@ -11,14 +11,13 @@
 namespace cowgpu {
 
 /// For every point of the grid the face, and the barycentric coordinates, of the point of the flat triangles between
-/// `positions` (unit vectors, one per vertex) that is closest to its direction (SphereDirections). Of faces whose closest
-/// points are equally far the least index is taken, as far as rounding tells them apart. Folded maps have an answer
-/// everywhere, and so have maps with gaps; on a flip-free map the face differs from the ray's near the edges only. Of the
-/// counts in the result faces_hit, flipped_faces, flat_faces and flipped_points are set.
+/// `positions` (unit vectors, one per vertex) that is closest to its direction (SphereDirections). Of the faces that hold
+/// the point the least index is taken, as DistanceField has it. Folded maps have an answer everywhere, and so have maps
+/// with gaps; on a flip-free map the face differs from the ray's near the edges only. Of the counts in the result
+/// faces_hit, flipped_faces, flat_faces and flipped_points are set.
 ///
-/// Looks at every ball round sixteen faces, and within those near enough at every face: some 4 us a point for 5000 faces,
-/// in proportion to the faces. Distance to a triangle: C. Ericson, Real-Time Collision Detection (2005), 5.1.5. Throws
-/// Error(bad_argument) for no faces or a face that names no position, Error(interrupted).
+/// By the verb `closest` on the CPU path. Throws Error(bad_argument) for no faces or a face that names no position, what
+/// DistanceField throws, Error(interrupted).
 SphereSamples closest_samples(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
                               Monitor& monitor);
 

@@ -1,8 +1,7 @@
 #include "host/spectrum/surface_distance.hpp"
 
+#include "host/backend.hpp"
 #include "host/error.hpp"
-#include "host/parallel.hpp"
-#include "host/plan/bvh.hpp"
 
 #include <Eigen/Geometry>
 
@@ -12,8 +11,8 @@
 namespace cowgpu {
 namespace {
 
-OneWayDistance one_way(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& other,
-                       std::size_t samples, unsigned threads, Monitor& monitor) {
+OneWayDistance one_way(std::span<const Vec3> vertices, std::span<const Face> faces, DistanceField& other,
+                       std::size_t samples, Monitor& monitor) {
   std::vector<Vec3> points = area_samples(vertices, faces, samples);
   if (points.empty()) throw Error(Fault::mesh_empty, "a surface without area has no distance from another");
   std::vector<bool> used(vertices.size());
@@ -22,20 +21,14 @@ OneWayDistance one_way(std::span<const Vec3> vertices, std::span<const Face> fac
   for (std::size_t v = 0; v < vertices.size(); ++v)
     if (used[v]) points.push_back(vertices[v]);
 
-  constexpr std::size_t batch = 1024;
-  std::vector<double> distance2(points.size());
-  parallel_for(threads, (points.size() + batch - 1) / batch, [&](std::size_t task, unsigned) {
-    check_stop(monitor);
-    for (std::size_t i = task * batch; i < std::min(points.size(), (task + 1) * batch); ++i)
-      distance2[i] = other.closest(points[i]).distance2;
-  });
+  const std::vector<double> distance = other.closest(points, {.with_sign = false}, monitor).distance;
   OneWayDistance result;
   double sum = 0;
-  for (std::size_t i = 0; i < samples; ++i) sum += distance2[i];
+  for (std::size_t i = 0; i < samples; ++i) sum += distance[i] * distance[i];
   result.rms = std::sqrt(sum / double(samples));
-  const auto largest = std::max_element(distance2.begin(), distance2.end());
-  result.largest = std::sqrt(*largest);
-  result.where = points[std::size_t(largest - distance2.begin())];
+  const auto largest = std::max_element(distance.begin(), distance.end());
+  result.largest = *largest;
+  result.where = points[std::size_t(largest - distance.begin())];
   return result;
 }
 
@@ -91,10 +84,12 @@ SurfaceDistance surface_distance(std::span<const Vec3> vertices, std::span<const
   require_surface(vertices, faces);
   require_surface(other_vertices, other_faces);
   if (samples == 0) throw Error(Fault::bad_argument, "a distance takes at least one sample");
-  const plan::Bvh own(vertices, faces), other(other_vertices, other_faces);
+  const auto backend = make_cpu_backend(threads);
+  const auto own = backend->distance_field(vertices, faces),
+             other = backend->distance_field(other_vertices, other_faces);
   SurfaceDistance result;
-  result.forth = one_way(vertices, faces, other, samples, threads, monitor);
-  result.back = one_way(other_vertices, other_faces, own, samples, threads, monitor);
+  result.forth = one_way(vertices, faces, *other, samples, monitor);
+  result.back = one_way(other_vertices, other_faces, *own, samples, monitor);
   return result;
 }
 

@@ -29,7 +29,7 @@ struct SurfaceDistance {
 /// without area. Indices must be valid.
 std::vector<Vec3> area_samples(std::span<const Vec3> vertices, std::span<const Face> faces, std::size_t count);
 
-/// Both ways by `samples` points each, on `threads` threads (0: all). `rms` has a sampling error of about rms / sqrt
+/// Both ways by `samples` points each, on `threads` threads (0: all) of the CPU path of `closest`. `rms` has a sampling error of about rms / sqrt
 /// (samples); `largest` is a lower bound. O(samples log faces). Throws Error(mesh_empty) for a surface without faces or
 /// without area, mesh_not_finite, interrupted. Indices must be valid.
 SurfaceDistance surface_distance(std::span<const Vec3> vertices, std::span<const Face> faces,
