@@ -50,6 +50,7 @@ void ClosestCall::each_part(std::size_t begin, std::size_t end, Monitor& monitor
     if (thread == 0) monitor.progress("closest points", double(first) / double(order_.size()));
     answer(std::span(order_).subspan(first, std::min(part, end - first)), first, find);
   });
+  if (end == order_.size()) monitor.progress("closest points", 1);
 }
 
 ClosestPoints ClosestCall::finish(ClosestReport* report) {

@@ -49,7 +49,6 @@ public:
                  found + i);
       });
     }
-    monitor.progress("closest points", 1);
     ClosestPoints result = call.finish(report);
     if (report)
       for (const auto& k : gpu_->take_profile()) report->kernels.push_back({k.kernel, k.dispatches, k.seconds});
@@ -109,7 +108,7 @@ MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, st
   MemoryNeed need;
   need.device = engine::Closest::tree_bytes(faces, faces) + engine::Closest::batch_bytes(lanes);
   // The device's tree is built beside a tree of boxes, and both are given up.
-  need.host = cpu::distance_field_bytes(vertices, faces, queries) + 250 * faces + engine::Closest::batch_bytes(lanes);
+  need.host = cpu::distance_field_bytes(vertices, faces, queries) + 360 * faces + engine::Closest::batch_bytes(lanes);
   return need;
 }
 
