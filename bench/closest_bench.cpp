@@ -75,12 +75,14 @@ public:
                  {"runs", options_.runs},
                  {"device", facts.name},
                  {"driver", facts.driver},
+                 {"vulkan_device", gpu_name_},
                  {"threads", threads_},
                  {"build_seconds", {{"ours", ours}, {"cgal_with_side", cgal}, {"embree", embree}}}};
     say("Benchmark of closest points, {}\n{}; {}; {} threads\n{}, {} triangles; trees built in {:.1f} ms (ours), "
         "{:.1f} "
         "(CGAL, with the tree for sides), {:.1f} (Embree)\n",
         date, facts.name, facts.driver, threads_, mesh_.name, mesh_.faces.size(), 1e3 * ours, 1e3 * cgal, 1e3 * embree);
+    if (gpu_field_) say("Vulkan device: {}\n", gpu_name_);
     say("{} queries; medians of {} calls; the ways take turns\n", options_.queries, options_.runs);
     compare("uniform", "uniform in the bounding box enlarged by 1.1", uniform());
     compare("near", "on the surface, moved by a Gaussian of 2 % of the diagonal", near());

@@ -111,6 +111,34 @@ TEST_CASE("more candidates than the device has room for are searched for on the 
   check_as_on_cpu(icosphere(4), std::vector<Vec3>(9, Vec3(1e-9, 0, 0)), usual_budget);
 }
 
+TEST_CASE("a list full of triangles that were near once is filtered and filled again", "[closest][vulkan]") {
+  if (no_device()) return;
+  // A lane with queries at both ends of a strip walks from one end to the other, nearer to the latter with every triangle.
+  RawMesh strip;
+  constexpr std::uint32_t faces = 300;
+  for (std::uint32_t k = 0; k < faces + 2; ++k) strip.vertices.emplace_back(k, k % 2, 0);
+  for (std::uint32_t k = 0; k < faces; ++k) strip.faces.push_back({k, k + 1, k + 2});
+  const std::vector<Vec3> ends = {{-1, 0.2, 0.3}, {faces + 2.0, 0.7, 0.4}};
+  check_as_on_cpu(strip, ends, usual_budget, false);
+
+  const plan::ClosestTree tree(strip.vertices, strip.faces);
+  const plan::ClosestTexels texels(tree);
+  engine::Gpu gpu("auto", true);
+  engine::Closest kernel(gpu.device(), {texels.nodes, texels.triangles, 2 * plan::closest_margin, usual_budget});
+  const auto queries = kernel.queries(1);
+  for (std::size_t k = 0; k < engine::closest_queries; ++k)
+    for (std::size_t c = 0; c < 3; ++c) queries[engine::closest_queries * c + k] = tree.local(ends[k % 2])[c];
+  kernel.search();
+  REQUIRE(kernel.lanes()[0].candidates == 2);
+  std::uint32_t found[2];
+  for (const engine::ClosestCandidate c : kernel.candidates().subspan(kernel.lanes()[0].first, 2)) {
+    REQUIRE((c.queries() == 5 || c.queries() == 10));
+    found[c.queries() == 10] = tree.face_of_slot[texels.slots[c.triangle()]];
+  }
+  CHECK(found[0] == 0);
+  CHECK(found[1] == faces - 1);
+}
+
 TEST_CASE("searches beyond the budget of loop iterations are finished on the host", "[closest][vulkan]") {
   if (no_device()) return;
   check_as_on_cpu(rough_ball(), std::vector<Vec3>(5, Vec3::Zero()), usual_budget);

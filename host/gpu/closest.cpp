@@ -8,6 +8,8 @@
 #include "host/parallel.hpp"
 #include "host/plan/closest_texels.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -88,6 +90,10 @@ private:
     }
     cpu::closest_of(tree_, points.data(), points.size(), std::span(slots).first(count), std::span(masks).first(count),
                     faces);
+    if (std::find(faces, faces + points.size(), no_face) != faces + points.size())
+      throw Error(Fault::device_failed, fmt::format("the device {} named no candidate for the closest face of a point; "
+                                                    "use --device cpu and report this",
+                                                    gpu_->facts().name));
   }
 
   std::shared_ptr<engine::Gpu> gpu_;
