@@ -59,6 +59,7 @@ public:
     auto start = Clock::now();
     field_ = backend_->distance_field(mesh_.vertices, mesh_.faces);
     const double ours = seconds_since(start);
+    open_gpu();
     start = Clock::now();
     cgal_ = std::make_unique<test::CgalTree>(mesh_.vertices, mesh_.faces);
     const double cgal = seconds_since(start);
@@ -74,12 +75,14 @@ public:
                  {"runs", options_.runs},
                  {"device", facts.name},
                  {"driver", facts.driver},
+                 {"vulkan_device", gpu_name_},
                  {"threads", threads_},
                  {"build_seconds", {{"ours", ours}, {"cgal_with_side", cgal}, {"embree", embree}}}};
     say("Benchmark of closest points, {}\n{}; {}; {} threads\n{}, {} triangles; trees built in {:.1f} ms (ours), "
         "{:.1f} "
         "(CGAL, with the tree for sides), {:.1f} (Embree)\n",
         date, facts.name, facts.driver, threads_, mesh_.name, mesh_.faces.size(), 1e3 * ours, 1e3 * cgal, 1e3 * embree);
+    if (gpu_field_) say("Vulkan device: {}\n", gpu_name_);
     say("{} queries; medians of {} calls; the ways take turns\n", options_.queries, options_.runs);
     compare("uniform", "uniform in the bounding box enlarged by 1.1", uniform());
     compare("near", "on the surface, moved by a Gaussian of 2 % of the diagonal", near());
@@ -87,6 +90,17 @@ public:
   }
 
 private:
+  // Where there is a Vulkan device it takes part.
+  void open_gpu() {
+    try {
+      const auto backend = make_gpu_backend({});
+      gpu_name_ = backend->facts().name;
+      gpu_field_ = backend->distance_field(mesh_.vertices, mesh_.faces);
+    } catch (const Error& error) {
+      say("no Vulkan device: {}\n", error.what());
+    }
+  }
+
   static RawMesh load(const std::string& name) { return ClosedSurface::from(load_mesh(name)).mesh(); }
 
   std::vector<Vec3> uniform() const {
@@ -134,12 +148,13 @@ private:
   }
 
   std::vector<Way> ways() {
-    const auto field = [this](bool with_sign) {
-      return [this, with_sign](const std::vector<Vec3>& queries, std::vector<double>& distances) {
+    const auto field_of = [this](DistanceField& field, bool with_sign) {
+      return [this, &field, with_sign](const std::vector<Vec3>& queries, std::vector<double>& distances) {
         Monitor silent;
-        distances = field_->closest(queries, {with_sign}, silent, &report_).distance;
+        distances = field.closest(queries, {with_sign}, silent, &report_).distance;
       };
     };
+    const auto field = [&](bool with_sign) { return field_of(*field_, with_sign); };
     struct Warm {
       std::uint32_t face = no_face;
     };
@@ -161,14 +176,19 @@ private:
       one_by_one<Warm>(queries, distances,
                        [this](const Vec3& q, Warm&) { return (embree_->closest(q).point - q).norm(); });
     };
-    return {{"ours, unsigned", "unsigned", field(false), 0, false, {}, {}},
-            {"ours, signed", "signed", field(true), 0, false, {}, {}},
-            {"ours, one at a time, from the last, in order", "single_warm", warm, 0, true, {}, {}},
-            {"ours, one at a time", "single_cold", cold, 0, false, {}, {}},
-            {"CGAL AABB tree (double)", "cgal", cgal, 1e-14, false, {}, {}},
-            {"CGAL AABB tree (double), in order", "cgal_in_order", cgal, 1e-14, true, {}, {}},
-            {"Embree point query (float)", "embree", embree, 1e-5, false, {}, {}},
-            {"Embree point query (float), in order", "embree_in_order", embree, 1e-5, true, {}, {}}};
+    std::vector<Way> all = {{"ours, unsigned", "unsigned", field(false), 0, false, {}, {}},
+                            {"ours, signed", "signed", field(true), 0, false, {}, {}},
+                            {"ours, one at a time, from the last, in order", "single_warm", warm, 0, true, {}, {}},
+                            {"ours, one at a time", "single_cold", cold, 0, false, {}, {}},
+                            {"CGAL AABB tree (double)", "cgal", cgal, 1e-14, false, {}, {}},
+                            {"CGAL AABB tree (double), in order", "cgal_in_order", cgal, 1e-14, true, {}, {}},
+                            {"Embree point query (float)", "embree", embree, 1e-5, false, {}, {}},
+                            {"Embree point query (float), in order", "embree_in_order", embree, 1e-5, true, {}, {}}};
+    if (gpu_field_) {
+      all.push_back({"ours on Vulkan, unsigned", "vulkan_unsigned", field_of(*gpu_field_, false), 0, false, {}, {}});
+      all.push_back({"ours on Vulkan, signed", "vulkan_signed", field_of(*gpu_field_, true), 0, false, {}, {}});
+    }
+    return all;
   }
 
   void verify(const std::vector<Vec3>& queries) {
@@ -236,7 +256,8 @@ private:
   unsigned threads_;
   RawMesh mesh_;
   std::unique_ptr<Backend> backend_;
-  std::unique_ptr<DistanceField> field_;
+  std::unique_ptr<DistanceField> field_, gpu_field_;
+  std::string gpu_name_;
   std::unique_ptr<plan::ClosestTree> tree_;
   std::unique_ptr<test::CgalTree> cgal_;
   std::unique_ptr<EmbreePoints> embree_;

@@ -14,7 +14,7 @@ namespace cowgpu::engine {
 enum class BindingKind {
   storage,
   texel_double,  ///< usamplerBuffer, a double a texel (R32G32_UINT)
-  texel_doubles, ///< usamplerBuffer, two doubles a texel (R32G32B32A32_UINT)
+  texel_doubles, ///< usamplerBuffer, two doubles or four words a texel (R32G32B32A32_UINT)
 };
 
 /// What a kernel is made of.

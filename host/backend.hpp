@@ -103,7 +103,7 @@ public:
   virtual MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const = 0;
 
   /// The verb `closest` on a triangle surface, which is copied: trees are built here. Throws what check_distance_surface
-  /// throws, too_large. On Vulkan devices the CPU path does it so far.
+  /// throws, too_large, device_failed, device_lost. Every path gives the same bits (host/gpu/closest.hpp).
   virtual std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices,
                                                         std::span<const Face> faces) = 0;
 

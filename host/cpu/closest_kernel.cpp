@@ -20,6 +20,7 @@ namespace cowgpu::cpu::HWY_NAMESPACE {
 
 using Floats = Wide<float, packet>;
 using Doubles = Wide<double, 8>;
+using FourDoubles = Wide<double, few>;
 using OneDouble = Wide<double, 1>;
 
 constexpr float unbounded = 1e30F; // less than the square of where unused slots are
@@ -342,6 +343,26 @@ std::uint32_t Single(const plan::ClosestTree& tree, const Vec3& point, double be
   return result.face;
 }
 
+void Decide(const plan::ClosestTree& tree, const Vec3* points, std::size_t count, std::span<const std::uint32_t> slots,
+            std::span<const std::uint32_t> masks, std::uint32_t* faces) {
+  HWY_ALIGN double exact[3][few], d2[few];
+  double best[few];
+  for (std::size_t i = 0; i < few; ++i) {
+    for (int c = 0; c < 3; ++c) exact[c][i] = points[std::min(i, count - 1)][c];
+    best[i] = infinite;
+    if (i < count) faces[i] = no_face;
+  }
+  const FourDoubles p[3] = {wide_load<FourDoubles>(exact[0]), wide_load<FourDoubles>(exact[1]),
+                            wide_load<FourDoubles>(exact[2])};
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    store(double_distance2(tree.frames[slots[k]], p), d2);
+    const std::uint32_t face = tree.face_of_slot[slots[k]];
+    for (std::size_t i = 0; i < count; ++i)
+      if (masks[k] >> i & 1 && (d2[i] < best[i] || (d2[i] == best[i] && face < faces[i])))
+        best[i] = d2[i], faces[i] = face;
+  }
+}
+
 // Rounding to single precision keeps the order, so no face is missed.
 HWY_INLINE std::uint32_t in_column(const plan::ClosestBoxes& boxes, const Floats* p, bool up) {
   const auto holds = [&](std::size_t c) HWY_ATTR {
@@ -379,6 +400,7 @@ namespace cowgpu::cpu {
 
 HWY_EXPORT(Packet);
 HWY_EXPORT(Single);
+HWY_EXPORT(Decide);
 HWY_EXPORT(Column);
 
 void closest_packet(const plan::ClosestTree& tree, const Vec3* points, std::size_t count, WarmSlots& warm,
@@ -388,6 +410,11 @@ void closest_packet(const plan::ClosestTree& tree, const Vec3* points, std::size
 
 std::uint32_t closest_single(const plan::ClosestTree& tree, const Vec3& point, double below, std::uint32_t warm_slot) {
   return HWY_DYNAMIC_DISPATCH(Single)(tree, point, below, warm_slot);
+}
+
+void closest_of(const plan::ClosestTree& tree, const Vec3* points, std::size_t count,
+                std::span<const std::uint32_t> slots, std::span<const std::uint32_t> masks, std::uint32_t* faces) {
+  HWY_DYNAMIC_DISPATCH(Decide)(tree, points, count, slots, masks, faces);
 }
 
 void column_faces(const plan::ClosestTree& tree, const Vec3& point, bool up, std::vector<std::uint32_t>& faces) {

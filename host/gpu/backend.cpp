@@ -4,6 +4,7 @@
 #include "engine/gpu.hpp"
 #include "engine/kernels/peak.hpp"
 #include "host/flush_denormals.hpp"
+#include "host/gpu/closest.hpp"
 #include "host/gpu/environment.hpp"
 #include "host/gpu/errors.hpp"
 #include "host/gpu/moments.hpp"
@@ -33,7 +34,8 @@ public:
   explicit GpuBackend(const GpuOptions& options)
       : gpu_(std::make_shared<engine::Gpu>(options.device, options.validation)), facts_(facts_of(gpu_->facts())),
         shape_(engine::moments_shape(gpu_->facts(), gpu::shape_from(options))),
-        transform_shape_(engine::sphere_transform_shape(gpu_->facts(), gpu::transform_shape_from(options))) {}
+        transform_shape_(engine::sphere_transform_shape(gpu_->facts(), gpu::transform_shape_from(options))),
+        iteration_budget_(options.iteration_budget) {}
 
   const DeviceFacts& facts() const override { return facts_; }
 
@@ -62,13 +64,12 @@ public:
     return gpu::sample_memory(gpu_->facts(), faces, grid);
   }
 
-  // No kernel of its own so far.
   std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces) override {
-    return make_cpu_backend()->distance_field(vertices, faces);
+    return gpu::translated([&] { return gpu::distance_field(gpu_, iteration_budget_, vertices, faces); });
   }
 
   MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) const override {
-    return make_cpu_backend()->distance_field_memory(vertices, faces, queries);
+    return gpu::distance_field_memory(vertices, faces, queries);
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {
@@ -86,6 +87,7 @@ private:
   DeviceFacts facts_;
   engine::MomentsShape shape_;
   engine::SphereTransformShape transform_shape_;
+  std::uint32_t iteration_budget_;
 };
 
 } // namespace

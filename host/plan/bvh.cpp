@@ -11,7 +11,6 @@ namespace cowgpu::plan {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t leaf_faces = 4;
 constexpr int bins = 16;
 constexpr double edge_margin = 1e-12;
 

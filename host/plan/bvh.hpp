@@ -45,18 +45,25 @@ public:
   /// Triangles by Voronoi regions (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
   ClosestPoint closest(const Vec3& point, double below = std::numeric_limits<double>::infinity()) const;
 
+  struct alignas(64) Node {
+    Vec3 low, high;
+    std::uint32_t first = 0; ///< of a leaf: its first triangle; else its second child. The first child is the next node
+    std::uint32_t count = 0; ///< triangles, at most leaf_faces; 0: no leaf
+  };
+  static constexpr std::uint32_t leaf_faces = 4;
+  // A node at depth d halves its triangles from d = 64 on, so no path is longer.
+  static constexpr int halving_depth = 64, deepest = halving_depth + 33;
+
+  /// The root first; triangles of neighbouring leaves follow each other.
+  std::span<const Node> nodes() const { return nodes_; }
+  /// Of the triangles in the order of the leaves.
+  std::span<const std::uint32_t> faces() const { return faces_; }
+
 private:
   struct Triangle {
     Vec3 a, ab, ac;
   };
-  struct alignas(64) Node {
-    Vec3 low, high;
-    std::uint32_t first = 0; ///< of a leaf: its first triangle; else its second child. The first child is the next node
-    std::uint32_t count = 0; ///< triangles; 0: no leaf
-  };
   struct Builder;
-  // A node at depth d halves its triangles from d = 64 on, so no path is longer.
-  static constexpr int halving_depth = 64, deepest = halving_depth + 33;
 
   std::vector<Node> nodes_;
   std::vector<Triangle> triangles_;  ///< in the order of the leaves

@@ -70,6 +70,9 @@ struct ClosestTree {
             float((p.z() - centre.z()) * scale)};
   }
 
+  /// Single precision has nothing to decide about such a query.
+  bool is_far(const Vec3& p) const { return ((p - centre) * scale).cwiseAbs().maxCoeff() > closest_far; }
+
   /// The closest point of one face.
   SurfacePoint on_face(std::uint32_t face, const Vec3& p) const;
 
