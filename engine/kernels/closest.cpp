@@ -13,8 +13,9 @@ namespace cowgpu::engine {
 namespace {
 
 constexpr std::uint32_t width = 64; // lanes a workgroup
-constexpr std::uint32_t candidates_a_lane = 16;
-constexpr std::uint64_t node_bytes = 16 * CLOSEST_NODE_TEXELS, triangle_bytes = 16 * CLOSEST_TRIANGLE_TEXELS;
+constexpr std::uint64_t candidates_a_lane = 16;
+constexpr std::uint64_t texel_bytes = 16, node_bytes = texel_bytes * CLOSEST_NODE_TEXELS,
+                        triangle_bytes = texel_bytes * CLOSEST_TRIANGLE_TEXELS;
 constexpr std::uint64_t query_bytes = 12 * closest_queries;
 constexpr float unreachable = 1e30F;
 
@@ -34,7 +35,7 @@ struct Closest::Batch {
   Batch(Device& device, std::uint32_t lanes)
       : capacity(lanes), queries(device, lanes * query_bytes, "the queries"),
         found(device, lanes * sizeof(ClosestLane), "the queries' candidates"),
-        candidates(device, 4 + std::uint64_t(4) * candidates_a_lane * lanes, "the candidates") {}
+        candidates(device, 4 + 4 * candidates_a_lane * lanes, "the candidates") {}
 
   std::uint32_t capacity; // lanes
   HostBuffer queries, found, candidates;
@@ -50,7 +51,7 @@ std::uint64_t Closest::batch_bytes(std::uint64_t lanes) {
 
 Closest::Closest(Device& device, const ClosestInput& input) : device_(device), margin_(input.margin) {
   const std::uint64_t triangles = input.triangles.size_bytes() / triangle_bytes;
-  const std::uint64_t texels = std::max(input.triangles.size_bytes(), input.nodes.size_bytes()) / 16;
+  const std::uint64_t texels = std::max(input.triangles.size_bytes(), input.nodes.size_bytes()) / texel_bytes;
   if (triangles >> CLOSEST_TRIANGLE_BITS || texels > device.limits().maxTexelBufferElements)
     throw Error(
         Failure::out_of_range, 0,
@@ -86,7 +87,7 @@ std::span<float> Closest::queries(std::uint32_t lanes) {
 }
 
 void Closest::search() {
-  const std::uint32_t capacity = candidates_a_lane * batch_->capacity;
+  const auto capacity = std::uint32_t(candidates_a_lane * batch_->capacity);
   const shaders::ClosestPush push = {margin_, unreachable, lanes_, steps_, capacity};
   const BufferRange ranges[CLOSEST_BINDINGS] = {{nodes_.get()},
                                                 {triangles_.get()},

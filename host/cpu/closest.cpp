@@ -2,15 +2,10 @@
 
 #include "host/cpu/closest_call.hpp"
 #include "host/cpu/closest_kernel.hpp"
-#include "host/error.hpp"
 #include "host/orientation.hpp"
 #include "host/parallel.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 
 namespace cowgpu::cpu {

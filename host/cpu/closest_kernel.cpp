@@ -20,7 +20,7 @@ namespace cowgpu::cpu::HWY_NAMESPACE {
 
 using Floats = Wide<float, packet>;
 using Doubles = Wide<double, 8>;
-using FourDoubles = Wide<double, few>;
+using FourDoubles = Wide<double, most_decided>;
 using OneDouble = Wide<double, 1>;
 
 constexpr float unbounded = 1e30F; // less than the square of where unused slots are
@@ -345,9 +345,9 @@ std::uint32_t Single(const plan::ClosestTree& tree, const Vec3& point, double be
 
 void Decide(const plan::ClosestTree& tree, const Vec3* points, std::size_t count, std::span<const std::uint32_t> slots,
             std::span<const std::uint32_t> masks, std::uint32_t* faces) {
-  HWY_ALIGN double exact[3][few], d2[few];
-  double best[few];
-  for (std::size_t i = 0; i < few; ++i) {
+  HWY_ALIGN double exact[3][most_decided], d2[most_decided];
+  double best[most_decided];
+  for (std::size_t i = 0; i < most_decided; ++i) {
     for (int c = 0; c < 3; ++c) exact[c][i] = points[std::min(i, count - 1)][c];
     best[i] = infinite;
     if (i < count) faces[i] = no_face;

@@ -31,7 +31,7 @@ std::uint32_t closest_single(const plan::ClosestTree& tree, const Vec3& point, d
 
 /// Of up to four points the closest faces among candidates: `slots`, each with a mask of the points it is one for.
 /// Every point must have one; where several are equally near in double precision, the least face.
-inline constexpr std::size_t few = 4;
+inline constexpr std::size_t most_decided = 4;
 void closest_of(const plan::ClosestTree& tree, const Vec3* points, std::size_t count,
                 std::span<const std::uint32_t> slots, std::span<const std::uint32_t> masks, std::uint32_t* faces);
 

@@ -19,7 +19,7 @@ namespace cowgpu::gpu {
 namespace {
 
 constexpr std::size_t lane_queries = engine::closest_queries, batch = lane_queries * engine::Closest::most_lanes;
-static_assert(lane_queries == cpu::few && batch % cpu::ClosestCall::part == 0);
+static_assert(lane_queries == cpu::most_decided && batch % cpu::ClosestCall::part == 0);
 
 class GpuDistanceField final : public DistanceField {
 public:
