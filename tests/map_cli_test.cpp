@@ -309,3 +309,44 @@ TEST_CASE("vertices of no face are zero in a map's file and when it is read", "[
   CHECK(map.positions.back() == Vec3::Zero());
   CHECK(map.positions.size() == mesh.vertices.size());
 }
+
+TEST_CASE("a map is taken neither for another method's nor for another mesh's of the same faces", "[map-cli]") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "map.ply", body = folder / "body.off", other = folder / "other.off";
+  RawMesh mesh = test::icosphere(1);
+  write_off(body, mesh);
+  mesh.vertices[3] *= 1.5;
+  write_off(other, mesh);
+  REQUIRE(run_program({"map", body, "--method", "harmonic", "-o", path}).exit_code == 0);
+  const auto expand = [&](const std::string& of, const std::string& which, const std::string& map) {
+    return run_program({"expand", which, "--of", of, "--map", map, "--lmax", "2", "--device", "cpu"});
+  };
+  CHECK(expand("harmonic", body, path).exit_code == 0);
+  const ProgramRun method = expand("stretch", body, path), hash = expand("harmonic", other, path);
+  CHECK(method.exit_code == 3);
+  CHECK_THAT(method.err, Contains("holds a map by the method harmonic, not stretch"));
+  CHECK(hash.exit_code == 3);
+  CHECK_THAT(hash.err, Contains("was made for a mesh of SHA-256"));
+  CHECK(expand("harmonic", body, "").exit_code == 2);
+}
+
+TEST_CASE("a map that rounding has spoilt is not written", "[map-cli]") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "map.ply";
+  const ProgramRun run =
+      run_program({"map", "builtin:cow@1", "--method", "harmonic", "--disk-scale", "1e300", "-o", path});
+  CHECK(run.exit_code == 3);
+  CHECK_THAT(run.err, Contains("covers the sphere 0 times"));
+  CHECK_FALSE(std::filesystem::exists(path));
+}
+
+TEST_CASE("a link to the mesh is not taken for an output", "[map-cli]") {
+  const TemporaryFolder folder;
+  const std::string body = folder / "body.off", link = folder / "link.ply";
+  write_off(body, test::icosphere(1));
+  std::filesystem::create_symlink(body, link);
+  const ProgramRun run = run_program({"map", body, "-o", link});
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.err, Contains("input and output at once"));
+  CHECK(std::filesystem::is_symlink(link));
+}

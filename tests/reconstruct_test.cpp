@@ -208,3 +208,27 @@ TEST_CASE("what cannot be rebuilt is refused", "[reconstruct]") {
   e.coefficients = SphereCoefficients(2, 3);
   CHECK_THROWS_AS(reconstruct(e, SurfaceFields::xyz, 1, sphere, 1, silent), Error);
 }
+
+TEST_CASE("what distance and angles bound is measured with the disks that close its poles", "[reconstruct]") {
+  const auto backend = make_cpu_backend(2);
+  Monitor silent;
+  SurfaceExpansion e;
+  e.origin = {0.5, -0.25, 1};
+  e.coefficients = SphereCoefficients(5, 6);
+  e.coefficients.at(0, 0, 0) = 3;
+  e.coefficients.at(0, 3, 1) = {0.1, 0.05};
+  e.coefficients.at(1, 1, 0) = 0.4; // theta' is 0.195 at one pole and pi - 0.195 at the other
+  e.coefficients.at(1, 2, 0) = 0.2;
+  e.coefficients.at(2, 2, 1) = {0.05, -0.1};
+  const SurfaceMeasures found = measure(e, SurfaceFields::f, 5, *backend, silent);
+  // The mesh's poles are points of those circles, which costs it an error of first order.
+  const auto error_of = [&](int degree) {
+    const TriangleSurface mesh =
+        reconstruct(e, SurfaceFields::f, 5, make_grid(GridKind::clenshaw_curtis, degree), *backend, silent);
+    return Eigen::Vector2d(volume(mesh.vertices, mesh.faces) / found.volume - 1,
+                           (centre_of_mass(mesh.vertices, mesh.faces) - found.centre_of_mass).norm());
+  };
+  const Eigen::Vector2d coarse = error_of(256), fine = error_of(512);
+  check_at_most(coarse.cwiseAbs().maxCoeff(), 1e-3, "at 256");
+  check_at_most((2 * fine - coarse).cwiseAbs().maxCoeff(), 4e-5, "extrapolated");
+}

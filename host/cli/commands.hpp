@@ -56,6 +56,9 @@ void add_degree_option(CLI::App& command, int& lmax, const char* what);
 /// Throws Error(too_large) with `advice` where this machine has not so much memory.
 void check_memory(const MemoryNeed& need, const Backend& backend, const char* advice);
 
+/// Throws Error(bad_argument) where the output's name leads to the file that is read.
+void refuse_same_file(const std::string& input, const std::string& output);
+
 /// "X,Y,Z", three finite numbers; nothing if the text is something else.
 std::optional<Vec3> parse_point(std::string_view text);
 

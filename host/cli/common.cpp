@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include <charconv>
 #include <cmath>
 
@@ -56,6 +58,13 @@ void check_memory(const MemoryNeed& need, const Backend& backend, const char* ad
   if (cpu.memory && host > cpu.memory)
     throw Error(Fault::too_large, fmt::format("this needs {} MiB of memory and the machine has {} MiB; {}", host >> 20,
                                               cpu.memory >> 20, advice));
+}
+
+void refuse_same_file(const std::string& input, const std::string& output) {
+  std::error_code none;
+  if (std::filesystem::equivalent(input, output, none))
+    throw Error(Fault::bad_argument,
+                fmt::format("{} is input and output at once; give the output another name", output));
 }
 
 std::optional<Vec3> parse_point(std::string_view text) {

@@ -165,6 +165,10 @@ void run(const Options& options, Common& common) {
   const OriginChoice origin = parse_origin(options.origin);
   // Before long work: a result that cannot be written should fail now.
   std::vector<std::unique_ptr<AtomicFile>> files;
+  for (const std::string& path : options.outputs) {
+    refuse_same_file(options.mesh, path);
+    if (!options.map_file.empty()) refuse_same_file(options.map_file, path);
+  }
   if (!options.dry_run)
     for (const std::string& path : options.outputs) files.push_back(std::make_unique<AtomicFile>(path));
 
@@ -249,6 +253,7 @@ void add_expand(CLI::App& app, Common& common) {
       ->add_option(
           "--map", options->map_file,
           "Take the map of --of from FILE.ply, which `cowgpu map MESH -o FILE.ply` wrote, instead of making it")
+      ->check([](const std::string& path) { return std::string(path.empty() ? "the name is empty" : ""); })
       ->type_name("FILE");
   CLI::Option* time = command
                           ->add_option("--time", options->time,

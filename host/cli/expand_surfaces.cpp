@@ -50,7 +50,7 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
     result.map = make_map(method, paper, surface, monitor);
   else {
     const std::string bytes = read_file(choice.map_file);
-    result.map = read_map(bytes, choice.map_file, surface);
+    result.map = read_map(bytes, choice.map_file, surface, method);
     result.map_file = choice.map_file;
     result.map_sha256 = sha256_hex(std::string_view(bytes));
   }

@@ -98,6 +98,7 @@ void run(const Options& options, const Common& common) {
   if (options.method == "harmonic") harmonic_options(options); // words that mean nothing, before files are touched
   const MapFormat format = options.output.empty() ? MapFormat::ply : map_format(options.output);
   std::unique_ptr<AtomicFile> file; // before long work: what cannot be written should fail now
+  if (!options.output.empty()) refuse_same_file(options.mesh, options.output);
   if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
 
   const ManifoldSurface surface = ManifoldSurface::from(ClosedSurface::from(load_mesh(options.mesh)));
@@ -130,6 +131,13 @@ void run(const Options& options, const Common& common) {
     report.repeat_seconds = seconds_since(start);
     monitor.clear();
   }
+  const double degree = std::abs(report.quality.degree);
+  if (file && !(std::abs(degree - 1) <= 1e-6))
+    throw Error(
+        Fault::map_failed,
+        fmt::format("the map covers the sphere {:.3g} times: rounding has spoilt it, and {} was not written; leave "
+                    "out --disk-scale, or take --method stretch",
+                    degree, options.output));
   if (file) {
     write_map(surface, map, format, *file);
     check_stop(monitor);

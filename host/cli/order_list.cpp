@@ -40,7 +40,11 @@ std::vector<int> parse_orders(const std::vector<std::string>& lists, bool mesh_t
       const std::size_t dots = word.find("..");
       const auto first = number(std::string_view(word).substr(0, dots));
       const auto last = dots == std::string::npos ? first : number(std::string_view(word).substr(dots + 2));
-      if (!first || !last || *last < *first)
+      if (first && last && *last < *first)
+        throw Error(Fault::bad_argument,
+                    fmt::format("--order {}: the range \"{}\" runs backwards; write the lower order first", shown(list),
+                                shown(word)));
+      if (!first || !last)
         throw Error(Fault::bad_argument,
                     fmt::format("--order {}: \"{}\" is no order; there are whole numbers from 0 to {}, ranges such as "
                                 "0..7{}, separated by commas",

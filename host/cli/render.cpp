@@ -114,6 +114,7 @@ void run(const Options& given, const Common& common) {
   if (options.resolution > 0 && options.resolution < largest)
     throw Error(Fault::bad_argument, fmt::format("--resolution {} cannot show order {}; it must be at least the order",
                                                  options.resolution, largest));
+  refuse_same_file(options.source.input, options.output);
   AtomicFile file(options.output); // before long work: what cannot be written should fail now
 
   // No Vulkan kernel draws so far: a device is opened only if it is asked for.

@@ -138,10 +138,7 @@ std::unique_ptr<SphereTransform> prepare(const Options& options, const Common& c
 // The result's file, opened before the work; none for a dry run.
 std::unique_ptr<AtomicFile> open_output(const Options& options) {
   file_format(options.output);
-  std::error_code none;
-  if (std::filesystem::equivalent(options.input, options.output, none))
-    throw Error(Fault::bad_argument,
-                fmt::format("{} is input and output at once; give the output another name", options.output));
+  refuse_same_file(options.input, options.output);
   return options.dry_run ? nullptr : std::make_unique<AtomicFile>(options.output);
 }
 

@@ -4,6 +4,7 @@
 #include "host/io/file.hpp"
 #include "host/io/glb.hpp"
 #include "host/io/ply.hpp"
+#include "host/io/shown.hpp"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,9 @@ namespace cowgpu {
 namespace {
 
 constexpr double unit_tolerance = 1e-9;
+
+// How the comments begin that read_map() looks at.
+constexpr std::string_view method_word = "map to the unit sphere: ", hash_word = "mesh sha256 ";
 
 std::string face_text(const Face& f) {
   return fmt::format("({}, {}, {})", f[0], f[1], f[2]);
@@ -33,6 +37,21 @@ void require_faces(const PlyMesh& file, const std::vector<Face>& faces, const st
                             here - faces.begin(), name, face_text(*there), face_text(*here), advice));
 }
 
+// What the file's comments say of the mesh and the method, where they do.
+void require_story(const PlyMesh& file, const RawMesh& mesh, const std::string& method, const std::string& name) {
+  for (const std::string& comment : file.comments) {
+    if (comment.starts_with(hash_word) && !mesh.sha256.empty() && comment.substr(hash_word.size()) != mesh.sha256)
+      throw Error(
+          Fault::file_format,
+          fmt::format("{} was made for a mesh of SHA-256 {}, and this one has {}: make the map again, or, where "
+                      "only the wording of the mesh's file differs, take that comment out of {}",
+                      name, shown(comment.substr(hash_word.size())), mesh.sha256, name));
+    if (!method.empty() && comment.starts_with(method_word) && comment.substr(method_word.size()) != method)
+      throw Error(Fault::file_format, fmt::format("{} holds a map by the method {}, not {}", name,
+                                                  shown(comment.substr(method_word.size())), method));
+  }
+}
+
 } // namespace
 
 MapFormat map_format(const std::filesystem::path& path) {
@@ -48,7 +67,7 @@ void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat f
   sphere.vertices = map.positions;
   sphere.faces = mesh.faces;
   if (format == MapFormat::ply) {
-    std::vector<std::string> comments = {"map to the unit sphere: " + map.method, "mesh sha256 " + mesh.sha256};
+    std::vector<std::string> comments = {std::string(method_word) + map.method, std::string(hash_word) + mesh.sha256};
     comments.insert(comments.end(), map.notes.begin(), map.notes.end());
     write_ply(sphere, comments, file);
     return;
@@ -60,17 +79,19 @@ void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat f
   write_glb(part, about, file);
 }
 
-SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface) {
-  return read_map(read_file(path), path.string(), surface);
+SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface, const std::string& method) {
+  return read_map(read_file(path), path.string(), surface, method);
 }
 
-SphereMap read_map(std::string_view bytes, const std::string& name, const ManifoldSurface& surface) {
+SphereMap read_map(std::string_view bytes, const std::string& name, const ManifoldSurface& surface,
+                   const std::string& method) {
   PlyMesh file = read_ply_positions(bytes, name);
   const std::size_t vertices = surface.vertices().size();
   if (file.vertices.size() != vertices)
     throw Error(Fault::file_format, fmt::format("{} has {} vertices and the mesh {}: it is no map of this mesh", name,
                                                 file.vertices.size(), vertices));
   require_faces(file, surface.faces(), name);
+  require_story(file, surface.closed().mesh(), method, name);
 
   std::vector<bool> used(vertices);
   for (const Face& f : surface.faces())

@@ -84,6 +84,7 @@ public:
     PlyMesh mesh;
     vertices(mesh);
     faces(mesh);
+    mesh.comments = std::move(comments_);
     return mesh;
   }
 
@@ -134,7 +135,11 @@ private:
       const auto words = line();
       if (words.empty()) fail(Fault::file_syntax, "an empty line in the header.");
       if (words[0] == "end_header") break;
-      if (words[0] == "comment" || words[0] == "obj_info") continue;
+      if (words[0] == "obj_info") continue;
+      if (words[0] == "comment") {
+        comments_.push_back(fmt::format("{}", fmt::join(words.begin() + 1, words.end(), " ")));
+        continue;
+      }
       if (words[0] == "element")
         element(words);
       else if (words[0] == "property")
@@ -239,6 +244,7 @@ private:
   int elements_ = 0;
   bool indices_ = false;
   Coordinate coordinates_[3];
+  std::vector<std::string> comments_;
 };
 
 } // namespace

@@ -22,7 +22,8 @@ void write_ply(const TriangleSurface& surface, std::span<const std::string> comm
 /// What a PLY file of ours says about a mesh.
 struct PlyMesh {
   std::vector<Vec3> vertices;
-  std::vector<Face> faces; ///< empty where the file has no faces
+  std::vector<Face> faces;           ///< empty where the file has no faces
+  std::vector<std::string> comments; ///< blanks between words are single
 };
 
 /// Reads the bytes of a file that write_ply() has written, or of one like it: binary little-endian; vertices first, x, y

@@ -14,6 +14,9 @@
 namespace cowgpu {
 namespace {
 
+// So that the fifth powers of lengths stay in range.
+constexpr double largest_coefficient = 1e50;
+
 using nlohmann::json;
 using result_json::member;
 
@@ -88,6 +91,18 @@ SurfaceFile read_surface(const std::filesystem::path& path, const std::string& o
   file.mesh_hash = text(name, mesh, "sha256");
   expansion.coefficients =
       result_json::coefficients(name, surface, int(surface_field_names.size()), largest_surface_degree);
+  const double mean = spherical_radius(expansion);
+  if (!(mean > 0))
+    throw Error(
+        Fault::file_format,
+        fmt::format("{}: the coefficient (0, 0) of f_r gives a mean distance of {:g} from the origin, which must "
+                    "be positive: the file was changed, or is of no surface",
+                    name, mean));
+  for (const std::complex<double>& a : expansion.coefficients.values)
+    if (!(std::abs(a) <= largest_coefficient))
+      throw Error(Fault::file_format,
+                  fmt::format("{}: a coefficient of {} has the size {:g}; surfaces up to {:g} are rebuilt", name,
+                              shown(file.name), std::abs(a), largest_coefficient));
   return file;
 }
 

@@ -165,9 +165,10 @@ HarmonicOptions HarmonicOptions::paper_recipe() {
 
 SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& options, Monitor& monitor) {
   if (!(options.disk_scale >= 0) || !std::isfinite(options.disk_scale))
-    throw Error(Fault::bad_argument, fmt::format("a disk cannot be scaled by {}: give a positive number, or 0 to let "
-                                                 "each hemisphere have half of the area",
-                                                 options.disk_scale));
+    throw Error(Fault::bad_argument,
+                fmt::format("a disk cannot be scaled by {}: give a positive number, or none to let "
+                            "each hemisphere have half of the area",
+                            options.disk_scale));
   if (options.polish && options.weights == EdgeWeights::mean_value)
     throw Error(Fault::bad_argument,
                 "a map with mean-value weights has no energy that could be polished: take cotangent "

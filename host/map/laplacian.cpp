@@ -22,12 +22,15 @@ double unit_scale(const ManifoldSurface& surface) {
 [[noreturn]] void undefined(const ManifoldSurface& surface, std::size_t face, std::string_view reason,
                             EdgeWeights weights) {
   const Face& f = surface.faces()[face];
-  throw Error(Fault::map_failed,
-              fmt::format("{} (vertices {}, {}, {}) {}, so {} weights are not defined there: {}",
-                          where(surface.closed().mesh(), face), f[0], f[1], f[2], reason, name(weights),
-                          weights == EdgeWeights::cotangent
-                              ? "collapse one of its edges or flip the longest, or take mean-value or Tutte weights"
-                              : "collapse the edge, or take Tutte weights"));
+  throw Error(
+      Fault::map_failed,
+      fmt::format(
+          "{} (vertices {}, {}, {}) {}, so {} weights are not defined there: {}", where(surface.closed().mesh(), face),
+          f[0], f[1], f[2], reason, name(weights),
+          weights == EdgeWeights::cotangent
+              ? "collapse one of its edges or flip the longest, or take the stretch map, or mean-value or Tutte "
+                "weights for a harmonic one"
+              : "collapse the edge, or take Tutte weights"));
 }
 
 // For each half-edge the part that its own face has in the weights: half the cotangent of the angle facing it.

@@ -51,6 +51,9 @@ struct MapQuality {
 };
 
 inline constexpr double smallest_log_ratio = -300;
+/// What log_area_ratio and shear are quantiles at.
+inline constexpr std::array log_area_ratio_parts = {0.0, 0.05, 0.25, 0.5, 0.95, 1.0};
+inline constexpr std::array shear_parts = {0.5, 0.95, 0.99, 1.0};
 
 /// Judges a map for a grid that expands to degree lmax >= 1. Throws Error(bad_argument) where the map does not belong to
 /// the surface (another number of vertices), is not finite, or lmax < 1.

@@ -147,7 +147,7 @@ SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& option
     throw Error(Fault::map_failed,
                 fmt::format("the mean-curvature flow did not become a sphere: after {} steps it moves by {:.1e} of the "
                             "mean radius a step (asked for: {:.1e}), and radii differ by {:.1e} (asked for: {:.1e}); "
-                            "allow more, or take the harmonic map",
+                            "take the stretch map, or the harmonic one",
                             steps, moved / now.mean, options.settled, now.deviation, options.roundness));
 
   std::vector<Direction> directions(surface.vertices().size(), Direction::Zero());

@@ -36,6 +36,10 @@ std::string json_members(const ordered_json& object) {
   return text;
 }
 
+ordered_json quantiles_json(std::span<const double> parts, std::span<const double> values) {
+  return {{"parts", parts}, {"values", values}}; // the library writes infinity as null
+}
+
 std::string utc_now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }

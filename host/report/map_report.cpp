@@ -17,10 +17,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// What the members of MapQuality are quantiles at.
-constexpr std::array area_parts = {0.0, 0.05, 0.25, 0.5, 0.95, 1.0};
-constexpr std::array shear_parts = {0.5, 0.95, 0.99, 1.0};
-
 constexpr std::size_t listed_faces = 5;
 
 std::string count_text(const RawMesh& mesh, const std::vector<std::uint32_t>& faces) {
@@ -38,10 +34,6 @@ std::string quantiles_text(std::span<const double> parts, std::span<const double
     text += fmt::format("{}{} ({} %)", i == 0 ? "" : ", ", value, 100 * parts[i]);
   }
   return text;
-}
-
-ordered_json quantiles_json(std::span<const double> parts, std::span<const double> values) {
-  return {{"parts", parts}, {"values", values}}; // the library writes infinity as null
 }
 
 struct Repeats {
@@ -95,7 +87,7 @@ ordered_json quality_json(const MapQuality& q) {
           {"inside_out", q.inside_out},
           {"flipped", {{"count", q.flipped.size()}, {"area", q.flipped_area}, {"faces", q.flipped}}},
           {"flat", {{"count", q.flat.size()}, {"faces", q.flat}}},
-          {"log_area_ratio", quantiles_json(area_parts, q.log_area_ratio)},
+          {"log_area_ratio", quantiles_json(log_area_ratio_parts, q.log_area_ratio)},
           {"shear", quantiles_json(shear_parts, q.shear)},
           {"smallest_area", {{"steradians", q.smallest_area}, {"face", q.smallest_area_face}}},
           {"smallest_height",
@@ -120,7 +112,7 @@ void write_screen(const MapReport& report, const Sink& sink) {
                    q.cell * 180 / std::numbers::pi, q.cell));
   row("flipped triangles", count_text(mesh, q.flipped));
   row("triangles of no area", count_text(mesh, q.flat));
-  row("area on sphere / body", quantiles_text(area_parts, q.log_area_ratio, true) + " of the surface");
+  row("area on sphere / body", quantiles_text(log_area_ratio_parts, q.log_area_ratio, true) + " of the surface");
   row("shear", quantiles_text(shear_parts, q.shear, false) + " of the surface");
   row("smallest triangle", fmt::format("{:.3e} sr, {:.3g} of a square cell, {}", q.smallest_area,
                                        q.smallest_area / (q.cell * q.cell), where(mesh, q.smallest_area_face)));

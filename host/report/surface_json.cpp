@@ -24,6 +24,9 @@ ordered_json map_json(const SurfaceResult& result) {
                               {"flat", quality.flat.size()},
                               {"degree", quality.degree},
                               {"inside_out", quality.inside_out},
+                              {"distortion",
+                               {{"log_area_ratio", quantiles_json(log_area_ratio_parts, quality.log_area_ratio)},
+                                {"shear", quantiles_json(shear_parts, quality.shear)}}},
                               {"unseen", quality.unseen},
                               {"unseen_area", quality.unseen_area},
                               {"notes", result.map.notes}};

@@ -70,6 +70,61 @@ std::vector<Vec3> sphere_about(const SurfaceExpansion& expansion, std::span<cons
   return vertices;
 }
 
+/// Integrals over a body of 1, P and P P^T, P from the expansion's origin.
+struct Sums {
+  double volume = 0;
+  Vec3 first = Vec3::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+};
+
+/// Adds the tetrahedron (0, a, b, c), signed (F. Tonon, J. Math. Stat. 1 (2005) 8).
+void add(Sums& sums, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 s = a + b + c;
+  const double cone = a.dot(b.cross(c));
+  sums.volume += cone / 6;
+  sums.first += cone / 24 * s;
+  sums.second += cone / 120 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+}
+
+/// Every point of the grid, [ring][longitude], mesh coordinates.
+std::vector<Vec3> grid_points(const SurfaceExpansion& expansion, SurfaceFields fields, int order,
+                              const SphereGrid& grid, Backend& backend, Monitor& monitor) {
+  const std::size_t points = grid.points(), length = std::size_t(grid.ring_length);
+  std::vector<double> values(3 * points);
+  backend.sphere_transform(grid, order)->synthesise(3, truncated(expansion, fields, order).values, values, monitor);
+  std::vector<Vec3> found;
+  found.reserve(points);
+  for (std::size_t i = 0; i < points; ++i)
+    found.push_back(place(expansion, fields, {values[i], values[points + i], values[2 * points + i]},
+                          grid.theta[i / length], grid.phi(int(i % length))));
+  return found;
+}
+
+/// Of the polyhedron over a grid with poles, whose first and last ring are closed by flat polygons.
+Sums sums_on(const SphereGrid& grid, const std::vector<Vec3>& points, const Vec3& origin) {
+  const std::size_t rings = std::size_t(grid.rings), length = std::size_t(grid.ring_length);
+  const auto at = [&](std::size_t ring, std::size_t j) { return Vec3(points[ring * length + j % length] - origin); };
+  Sums sums;
+  for (std::size_t j = 1; j + 1 < length; ++j) {
+    add(sums, at(0, 0), at(0, j), at(0, j + 1));
+    add(sums, at(rings - 1, 0), at(rings - 1, j + 1), at(rings - 1, j));
+  }
+  for (std::size_t i = 0; i + 1 < rings; ++i)
+    for (std::size_t j = 0; j < length; ++j) {
+      add(sums, at(i, j), at(i + 1, j), at(i + 1, j + 1));
+      add(sums, at(i, j), at(i + 1, j + 1), at(i, j + 1));
+    }
+  return sums;
+}
+
+SurfaceMeasures measures(double volume, const Vec3& first, const Eigen::Matrix3d& second, const Vec3& origin) {
+  SurfaceMeasures result;
+  result.volume = volume;
+  result.centre_of_mass = origin + first / volume;
+  result.inertia = second.trace() * Eigen::Matrix3d::Identity() - second;
+  return result;
+}
+
 } // namespace
 
 double spherical_radius(const SurfaceExpansion& expansion) {
@@ -140,21 +195,12 @@ TriangleSurface reconstruct(const SurfaceExpansion& expansion, SurfaceFields fie
   check_order(expansion, fields, order);
   SphereTriangulation sphere = triangulation(grid);
   if (order == 0) return finished(fields, order, sphere_about(expansion, sphere.directions), std::move(sphere.faces));
-  const std::size_t points = grid.points(), length = std::size_t(grid.ring_length);
-  std::vector<double> values(3 * points);
-  backend.sphere_transform(grid, order)->synthesise(3, truncated(expansion, fields, order).values, values, monitor);
-  std::vector<Vec3> vertices;
+  const std::vector<Vec3> points = grid_points(expansion, fields, order, grid, backend, monitor);
+  const auto length = std::ptrdiff_t(grid.ring_length);
+  std::vector<Vec3> vertices = {points.front()}; // the poles' rings are one vertex each
   vertices.reserve(sphere.directions.size());
-  const auto add = [&](std::size_t ring, std::size_t j) {
-    const std::size_t i = ring * length + j;
-    vertices.push_back(place(expansion, fields, {values[i], values[points + i], values[2 * points + i]},
-                             grid.theta[ring], grid.phi(int(j))));
-  };
-  const std::size_t last = std::size_t(grid.rings) - 1;
-  add(0, 0);
-  for (std::size_t ring = 1; ring < last; ++ring)
-    for (std::size_t j = 0; j < length; ++j) add(ring, j);
-  add(last, 0);
+  vertices.insert(vertices.end(), points.begin() + length, points.end() - length);
+  vertices.push_back(points[points.size() - std::size_t(length)]);
   return finished(fields, order, std::move(vertices), std::move(sphere.faces));
 }
 
@@ -169,9 +215,18 @@ SurfaceMeasures measure(const SurfaceExpansion& expansion, SurfaceFields fields,
     result.inertia = 0.4 * result.volume * radius * radius * Eigen::Matrix3d::Identity();
     return result;
   }
+  if (fields == SurfaceFields::f) {
+    const int coarse = std::clamp(2 * order, 64, largest_grid_degree / 2);
+    const auto on_grid = [&](int degree) {
+      const SphereGrid grid = make_grid(GridKind::clenshaw_curtis, degree);
+      return sums_on(grid, grid_points(expansion, fields, order, grid, backend, monitor), expansion.origin);
+    };
+    const Sums a = on_grid(coarse), b = on_grid(2 * coarse);
+    return measures((4 * b.volume - a.volume) / 3, (4 * b.first - a.first) / 3, (4 * b.second - a.second) / 3,
+                    expansion.origin);
+  }
   const int degree = std::min((5 * order + 1) / 2, largest_grid_degree);
-  const SphereGrid grid =
-      make_grid(GridKind::gauss_legendre, fields == SurfaceFields::xyz ? degree : std::max(degree, 64));
+  const SphereGrid grid = make_grid(GridKind::gauss_legendre, degree);
   const std::size_t points = grid.points(), length = std::size_t(grid.ring_length);
   std::vector<double> values(3 * points), by_theta(3 * points), by_phi(3 * points);
   const SphereCoefficients part = truncated(expansion, fields, order);
@@ -191,21 +246,8 @@ SurfaceMeasures measure(const SurfaceExpansion& expansion, SurfaceFields fields,
     Eigen::Matrix3d ring_second = Eigen::Matrix3d::Zero();
     for (std::size_t j = 0; j < length; ++j) {
       const std::size_t i = ring * length + j;
-      Vec3 t = vector(by_theta, i), p = vector(by_phi, i);
-      const Vec3 v = vector(values, i),
-                 at = place(expansion, fields, v, grid.theta[ring], grid.phi(int(j))) - expansion.origin;
-      if (fields == SurfaceFields::f) {
-        // From changes of (r, theta', phi') to changes of the point.
-        const double theta = grid.theta[ring] + v[1] + expansion.mean_dtheta,
-                     phi = grid.phi(int(j)) + v[2] + expansion.mean_dphi;
-        const double st = std::sin(theta), ct = std::cos(theta), sp = std::sin(phi), cp = std::cos(phi);
-        Eigen::Matrix3d frame;
-        frame.col(0) = Vec3(st * cp, st * sp, ct);
-        frame.col(1) = v[0] * Vec3(ct * cp, ct * sp, -st);
-        frame.col(2) = v[0] * st * Vec3(-sp, cp, 0);
-        t = frame * (t + Vec3(0, 1, 0));
-        p = frame * (p + Vec3(0, 0, 1));
-      }
+      const Vec3 t = vector(by_theta, i), p = vector(by_phi, i);
+      const Vec3 at = vector(values, i) - expansion.origin;
       const double cone = at.dot(t.cross(p));
       ring_volume += cone;
       ring_first += cone * at;
@@ -216,11 +258,7 @@ SurfaceMeasures measure(const SurfaceExpansion& expansion, SurfaceFields fields,
     first += weight * ring_first;
     second += weight * ring_second;
   }
-  result.volume = volume / 3;
-  result.centre_of_mass = expansion.origin + first / 4 / result.volume;
-  second /= 5;
-  result.inertia = second.trace() * Eigen::Matrix3d::Identity() - second;
-  return result;
+  return measures(volume / 3, first / 4, second / 5, expansion.origin);
 }
 
 } // namespace cowgpu

@@ -65,11 +65,16 @@ struct SurfaceMeasures {
       Eigen::Matrix3d::Zero(); ///< integral of (r^2 delta_ij - x_i x_j) about the expansion's origin
 };
 
-/// By the divergence theorem over the smooth surface itself, not over triangles: with P = F - origin and
+/// For x, y, z by the divergence theorem over the smooth surface itself, not over triangles: with P = F - origin and
 /// p = P . (dF/dtheta x dF/dphi) / sin theta, the integrals over the sphere of p/3, p P/4 and p P P^T/5 are volume, first
-/// and second moment. For x, y, z these are polynomials of degree 3, 4 and 5 times the order, and the Gauss-Legendre grid
-/// of degree 5/2 order makes them exact up to rounding; for f the same grid, of degree 64 at least, leaves an error of
-/// quadrature, as do orders whose grid would be beyond largest_grid_degree. Overlaps count as often as the surface winds round them. Throws what reconstruct() throws.
+/// and second moment: polynomials of degree 3, 4 and 5 times the order, for which the Gauss-Legendre grid of degree 5/2
+/// order is exact up to rounding (to order 3276; above, grids end).
+///
+/// For f the surface has a hole about either pole, a circle, closed here by a flat disk; reconstruct() tends to the same
+/// body. It is measured as two polyhedra, on grids of degree 2 order and 4 order (64 and 128 at least), and extrapolated
+/// to degree infinity; the error falls with the fourth power of the degree.
+///
+/// Overlaps count as often as the surface winds round them. Throws what reconstruct() throws.
 SurfaceMeasures measure(const SurfaceExpansion& expansion, SurfaceFields fields, int order, Backend& backend,
                         Monitor& monitor);
 
