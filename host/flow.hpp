@@ -34,6 +34,7 @@ enum FlowFlag : std::uint8_t {
   flow_restarted = 8,   ///< integrated again at a tighter tolerance
   flow_unfinished = 16, ///< neither way came to the end: its position is where it got stuck
   flow_surface = 32,    ///< backward: it reached the surface
+  flow_notch = 64,      ///< started where no ray leaves (a saddle, a reflex edge): 1e-7 of the diagonal off the surface
 };
 
 /// One entry a start, in their order.

@@ -372,6 +372,7 @@ void FlowPath::leave(const Vec3& start, const Vec3& given, std::uint32_t warm) {
   const Vec3 centre = foot + least * normal;
   if (surface_.foot(nearest(centre, warm_), centre).distance >= least - small(rounding, least))
     return ray(foot, normal, 0, warm_);
+  end_.flags |= flow_notch;
   const double away = std::min(off_surface * scale_, time_ - t_);
   x_ = foot + away * normal;
   t_ += away;

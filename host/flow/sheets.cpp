@@ -109,7 +109,7 @@ std::vector<double> sheet_fields(std::span<const Vec3> vertices, std::span<const
   std::vector<RingCount> counts(of_ring.size());
   parallel_for(0, of_ring.size(), [&](std::size_t ring, unsigned) {
     check_stop(monitor);
-    std::vector<double> degree(length, 0);
+    std::vector<double> degree(length, 0), size(length, 0);
     std::vector<std::uint32_t> held(length, 0);
     for (const std::uint32_t s : of_ring[ring]) {
       const Sheet& sheet = sheets[s];
@@ -131,13 +131,13 @@ std::vector<double> sheet_fields(std::span<const Vec3> vertices, std::span<const
         const auto field = surface_field_values(position, origin, grid.theta[ring], grid.phi(int(j)), signed_dphi);
         for (std::size_t f = 0; f < 6; ++f) values[f * points + ring * length + j] += weight * field[f];
         degree[j] += weight;
+        size[j] += std::abs(weight);
         ++held[j];
       }
     }
     RingCount& count = counts[ring];
     for (std::size_t j = 0; j < length; ++j) {
-      // Points on an edge are in two triangles without a fold.
-      count.folded += held[j] > 1 && std::abs(double(held[j]) - std::abs(degree[j])) > 1.5;
+      count.folded += size[j] - std::abs(degree[j]) > 0.25;
       count.most = std::max(count.most, held[j]);
       count.least = std::min(count.least, degree[j]);
       count.largest = std::max(count.largest, degree[j]);

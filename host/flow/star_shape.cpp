@@ -1,6 +1,7 @@
 #include "host/flow/star_shape.hpp"
 
 #include "host/error.hpp"
+#include "host/mesh/triangle_surface.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ namespace cowgpu {
 namespace {
 
 constexpr std::size_t batch = 1 << 16;
-constexpr std::uint64_t most_regions = 200'000'000;
+constexpr std::uint64_t most_regions = 20'000'000;
 
 std::array<Vec3, 3> corners(const Vec3& a = Vec3::Zero()) {
   return {a, a, a};
@@ -114,10 +115,17 @@ private:
   bool idle(const Region& r, const Ball& n, double level) const {
     for (const Vec3& along : cones_[r.cone])
       if (along.dot(n.centre) > n.radius + 1e-12) return true;
+    // Largest (origin - q) . n over the cap: along an edge only the part across it counts.
+    const double angle = 2 * std::asin(std::min(1.0, n.radius / 2));
     double most = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < r.point_count; ++i) {
-      const Vec3& p = r.points[std::size_t(i)];
-      most = std::max(most, behind(p, n.centre) + (origin_ - p).norm() * n.radius);
+      Vec3 w = origin_ - r.points[std::size_t(i)];
+      if (r.point_count == 2) {
+        const Vec3 along = (r.points[1] - r.points[0]).normalized();
+        w -= w.dot(along) * along;
+      }
+      const double between = std::atan2(w.cross(n.centre).norm(), w.dot(n.centre));
+      most = std::max(most, w.norm() * std::cos(std::max(0.0, between - angle)));
     }
     return most <= level;
   }
@@ -133,7 +141,11 @@ private:
 };
 
 void Search::seed(std::span<const Vec3> vertices, std::span<const Face> faces) {
+  // Besides directions along the surface every cone has one into the body, against the angle-weighted normal: a normal looks
+  // away from it too (Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243).
+  const std::vector<Vec3> outwards = vertex_normals(vertices, faces);
   std::map<std::array<std::uint32_t, 2>, std::vector<Vec3>> edges;
+  std::map<std::array<std::uint32_t, 2>, Vec3> edge_normals;
   std::map<std::uint32_t, std::vector<Vec3>> fans;
   std::vector<Region> flat;
   for (const Face& face : faces) {
@@ -142,6 +154,7 @@ void Search::seed(std::span<const Vec3> vertices, std::span<const Face> faces) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = face[k], b = face[(k + 1) % 3], c = face[(k + 2) % 3];
       const Vec3 along = (vertices[b] - vertices[a]).stableNormalized(), to_c = vertices[c] - vertices[a];
+      edge_normals.try_emplace({std::min(a, b), std::max(a, b)}, Vec3::Zero()).first->second += normal;
       edges[{std::min(a, b), std::max(a, b)}].push_back((to_c - to_c.dot(along) * along).stableNormalized());
       fans[a].push_back(along);
       fans[b].push_back(-along);
@@ -151,6 +164,7 @@ void Search::seed(std::span<const Vec3> vertices, std::span<const Face> faces) {
   }
   // Last in, first out: faces come first.
   for (auto& [vertex, cone] : fans) {
+    cone.push_back(-outwards[vertex]);
     cones_.push_back(std::move(cone));
     for (int octant = 0; octant < 8; ++octant) {
       Region r{corners(vertices[vertex]), corners(), 1, 3, std::uint32_t(cones_.size() - 1)};
@@ -159,6 +173,7 @@ void Search::seed(std::span<const Vec3> vertices, std::span<const Face> faces) {
     }
   }
   for (auto& [ends, cone] : edges) {
+    cone.push_back(-edge_normals.at(ends).stableNormalized());
     cones_.push_back(std::move(cone));
     const Vec3 along = (vertices[ends[1]] - vertices[ends[0]]).stableNormalized();
     if (along.squaredNorm() == 0) continue;
@@ -186,18 +201,24 @@ void Search::look(const std::vector<Region>& regions, std::vector<Region>& waiti
   const ClosestPoints closest = field_->closest(centres, {}, monitor_);
   found_.queries += centres.size();
   std::vector<Region> left;
+  std::vector<double> short_of; // by how much a ball of this size does not fit at the middle
   for (std::size_t i = 0; i < open.size(); ++i) {
     const Ball q = round_points(*open[i]), n = round_normals(*open[i]);
     const double distance = std::abs(closest.distance[i]), reach = q.radius + level * n.radius;
     if (distance + reach < level - rounding) continue;                    // no ball of this size fits
     if (distance > reach + rounding && closest.winding[i] != 0) continue; // it fits inside the body
     left.push_back(*open[i]);
+    short_of.push_back(level - distance);
   }
   raise(left);
-  for (const Region& r : left) {
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const Region& r = left[i];
     const Ball q = round_points(r), n = round_normals(r);
     Region one = r, other = r;
-    if (q.radius >= level * n.radius)
+    // Cutting points can rule the rest out only if normals alone leave no room.
+    const double turn = level * n.radius;
+    const bool cut_normals = n.radius > 1e-10 && (short_of[i] <= turn || q.radius < turn);
+    if (!cut_normals)
       cut(
           r.points, r.point_count, [](const Vec3& a, const Vec3& b) { return Vec3((a + b) / 2); }, one.points,
           other.points);
@@ -220,7 +241,9 @@ void Search::raise(const std::vector<Region>& regions) {
   for (const Region& r : regions) {
     Try t{round_points(r).centre, round_normals(r).centre, 0};
     t.radius = behind(t.q, t.n);
-    if (t.radius > found_.lower) tries.push_back(t);
+    const auto& cone = cones_[r.cone];
+    const bool normal = std::all_of(cone.begin(), cone.end(), [&](const Vec3& along) { return along.dot(t.n) <= 0; });
+    if (normal && t.radius > found_.lower) tries.push_back(t);
   }
   for (int round = 0; round < 60 && !tries.empty(); ++round) {
     std::vector<Vec3> centres;

@@ -30,7 +30,10 @@ struct StarShapeTime {
 /// that q + L n is at least L from the surface, distances change no faster than the place, so one query rules out a whole
 /// neighbourhood. Rounding is allowed for by 1e-12 of the diagonal.
 ///
-/// The surface must be closed. Throws Error(bad_argument) for an origin that is not finite or a tolerance below 1e-9 of
+/// Some 1e5 to 1e6 queries where the supremum is met at points. Where it is met all along an edge, as between two parallel
+/// boxes, they grow like length / tolerance, and after 2e7 regions the search is given up.
+///
+/// The surface must be a closed manifold (ManifoldSurface). Throws Error(bad_argument) for an origin that is not finite or a tolerance below 1e-9 of
 /// the diagonal, what DistanceField throws, interrupted.
 StarShapeTime star_shape_time(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin,
                               double tolerance, Backend& backend, Monitor& monitor);
