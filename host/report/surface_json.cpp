@@ -18,15 +18,10 @@ ordered_json map_json(const SurfaceResult& result) {
     map["file"] = result.map_file;
     map["sha256"] = result.map_sha256;
   }
-  const ordered_json worth = {{"lookup", lookup_name(result)},
-                              {"flipped", quality.flipped.size()},
-                              {"flipped_area", quality.flipped_area},
-                              {"flat", quality.flat.size()},
-                              {"degree", quality.degree},
-                              {"inside_out", quality.inside_out},
-                              {"unseen", quality.unseen},
-                              {"unseen_area", quality.unseen_area},
-                              {"notes", result.map.notes}};
+  const ordered_json worth = {
+      {"lookup", lookup_name(result)}, {"flipped", quality.flipped.size()},  {"flipped_area", quality.flipped_area},
+      {"flat", quality.flat.size()},   {"degree", quality.degree},           {"inside_out", quality.inside_out},
+      {"unseen", quality.unseen},      {"unseen_area", quality.unseen_area}, {"notes", result.map.notes}};
   map.update(worth);
   return map;
 }
