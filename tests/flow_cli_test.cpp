@@ -48,9 +48,10 @@ TEST_CASE("a sphere expands over the flow to itself, by the level set and by sig
     for (const json& row : flow["coefficients"]) {
       INFO(row);
       const bool monopole = row[0] == 0;
-      CHECK(std::abs(row[2].get<double>() - (monopole ? whole : 0)) < 0.02); // the sagitta
-      CHECK(std::abs(row[4].get<double>()) < 0.02);
-      CHECK(std::abs(row[6].get<double>()) < 0.02);
+      // The sagitta, 0.01 of it in the monopole.
+      CHECK(std::abs(row[2].get<double>() - (monopole ? whole : 0)) < (monopole ? 0.04 : 1e-3));
+      CHECK(std::abs(row[4].get<double>()) < 1e-3);
+      CHECK(std::abs(row[6].get<double>()) < 1e-3);
     }
   }
 }

@@ -51,8 +51,7 @@ TEST_CASE("an inflated box has the volume and area of Steiner's formula, to seco
   const Vec3 sides(1, 2, 3);
   const double v = sides.prod(), edges = sides.sum();
   const double a = 2 * (sides.x() * sides.y() + sides.y() * sides.z() + sides.z() * sides.x());
-  for (const double t : {0.1, 0.5, 4.0}) {
-    INFO(t);
+  for (const double t : {0.5, 1.0, 4.0}) { // no less than some cells, or they are no judge of the order
     const double volume = v + a * t + pi * edges * t * t + 4. / 3 * pi * t * t * t;
     const double area = a + 2 * pi * edges * t + 4 * pi * t * t;
     const Level coarse = level_of(box(sides), t, 32), fine = level_of(box(sides), t, 64);
@@ -63,10 +62,12 @@ TEST_CASE("an inflated box has the volume and area of Steiner's formula, to seco
       CHECK(found->report.largest_residual < 1e-12 * sides.norm());
     }
     const double error = volume - *fine.audit.volume, coarser = volume - *coarse.audit.volume;
+    INFO(t << ": volume off by " << error / volume << " and " << coarser / volume << ", area by "
+           << fine.audit.area / area - 1);
     CHECK(error > 0); // chords of a convex surface
-    CHECK(error < 4e-3 * volume);
-    CHECK(std::log2(coarser / error) == Approx(2).margin(0.4));
-    CHECK(std::abs(fine.audit.area - area) < 4e-3 * area);
+    CHECK(error < 1.6e-3 * volume);
+    CHECK(std::log2(coarser / error) == Approx(2).margin(0.25));
+    CHECK(std::abs(fine.audit.area - area) < 1e-3 * area);
   }
 }
 
