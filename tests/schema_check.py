@@ -59,8 +59,8 @@ for arguments in (
     want = result["mesh"]["volume"] * mass["density"] / (4 * 3.141592653589793) ** 0.5
     assert abs(q00 - want) < 1e-14 * abs(want), "Q_00 is the mass over sqrt(4 pi)"
 
-for of, want in (("all", ["mass", "harmonic", "stretch", "smooth"]), ("stretch,harmonic", ["harmonic", "stretch"])):
-    both = expand("builtin:cow@1", "--of", of, "--lmax", "9", "--device", "cpu", "--aliasing", "--json")
+for of, want in (("all", ["mass", "harmonic", "stretch", "smooth", "flow"]), ("stretch,harmonic", ["harmonic", "stretch"])):
+    both = expand("builtin:cow@1", "--of", of, "--lmax", "9", "--device", "cpu", "--aliasing", "--json", *(["--flow-grid", "64"] if of == "all" else []))
     jsonschema.validate(both, schema)
     assert list(both["expansions"]) == want
     for name in want[-2:]:
@@ -173,6 +173,31 @@ with tempfile.TemporaryDirectory() as folder:
     assert [row["order"] for row in rebuilt["orders"]] == list(range(9)), "0 to 8 unless told otherwise"
     rebuilt["orders"][0]["distance"] = "far"
     refuses(reconstruct, rebuilt, "a distance in words")
+for arguments, meaning in (
+    (["--time", "0.2", "--flow-grid", "64"], "level-set"),
+    (["--sheets", "signed", "--refinements", "1"], "sheets"),
+    (["--recipe", "paper", "--refinements", "1"], "paper"),
+):
+    flowed = expand("builtin:cow@1", "--of", "flow", "--lmax", "3", "--device", "cpu", "--json", *arguments)
+    jsonschema.validate(flowed, schema)
+    flow = flowed["expansions"]["flow"]["flow"]
+    assert flow["meaning"] == meaning and ("converged" in flow) == (meaning == "paper")
+    assert len(flow["sheets"]) == (0 if meaning == "level-set" else 2)
+    assert len(flow["uncertainty"]) == (0 if meaning == "paper" else 4)
+flow["meaning"] = "vague"
+refuses(schema, flowed, "a flow that means nothing")
+flowed = output_of("map", "--json", "builtin:cow@1", "--method", "flow", "--time", "0.1", "--lmax", "8")
+jsonschema.validate(flowed, sphere_map)
+assert flowed["flow"]["points"]["points"] == flowed["mesh"]["vertices"]
+inflate = load_schema("inflate")
+for arguments in (["--star"], ["--levels", "0.1,star", "--cells", "16"]):
+    inflated = output_of("inflate", "builtin:cow@1", *arguments, "--device", "cpu", "--json")
+    jsonschema.validate(inflated, inflate)
+    assert inflated["star_shape"]["lower"] < inflated["star_shape"]["upper"]
+assert [level["name"] for level in inflated["levels"]] == ["0.1", "star"]
+inflated["levels"][0]["closed"] = False
+refuses(inflate, inflated, "an open level set")
+
 distance = load_schema("distance")
 with tempfile.TemporaryDirectory() as folder:
     points = os.path.join(folder, "points.csv")
@@ -185,4 +210,4 @@ with tempfile.TemporaryDirectory() as folder:
     assert report["points"] == 125 and report["inside"] == 27 and report["outside"] == 98
 report["grid"]["counts"] = [1, 2]
 refuses(distance, report, "a grid of two axes")
-print("27 documents and 5 files passed")
+print("33 documents and 5 files passed")

@@ -3,6 +3,7 @@
 
 #include "host/backend.hpp"
 #include "host/cli/console.hpp"
+#include "host/mesh/body.hpp"
 #include "host/types.hpp"
 
 #include <CLI/CLI.hpp>
@@ -37,6 +38,7 @@ void add_transform(CLI::App& app, Common& common);
 void add_spectrum(CLI::App& app, Common& common);
 void add_map(CLI::App& app, Common& common);
 void add_reconstruct(CLI::App& app, Common& common);
+void add_inflate(CLI::App& app, Common& common);
 void add_distance(CLI::App& app, Common& common);
 
 /// Adds `roundtrip` to the command `transform`.
@@ -61,6 +63,9 @@ void refuse_same_file(const std::string& input, const std::string& output);
 
 /// "X,Y,Z", three finite numbers; nothing if the text is something else.
 std::optional<Vec3> parse_point(std::string_view text);
+
+/// Reads --origin: com, mesh or X,Y,Z. Throws Error(bad_argument).
+OriginChoice parse_origin(const std::string& text);
 
 /// The help text of a MESH argument.
 std::string mesh_help();

@@ -80,6 +80,14 @@ std::optional<Vec3> parse_point(std::string_view text) {
   return point;
 }
 
+OriginChoice parse_origin(const std::string& text) {
+  if (text == "com") return {};
+  if (text == "mesh") return {"mesh", Vec3::Zero()};
+  if (const auto point = parse_point(text)) return {"given", *point};
+  throw Error(Fault::bad_argument,
+              fmt::format("--origin {}: it must be com, mesh or three numbers X,Y,Z in mesh coordinates", text));
+}
+
 std::string mesh_help() {
   std::string text = "An OFF file, `benchmark` (libigl's cow.off), or a built-in body:";
   for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);

@@ -22,7 +22,7 @@ struct Options {
   std::string map_file;
   bool aliasing = false;
   std::string time = "auto", sheets = "level-set";
-  int refinements = FlowChoice{}.refinements;
+  int refinements = FlowChoice{}.refinements, flow_grid = FlowChoice{}.grid_degree;
   bool flow_options = false;
   int lmax = 8;
   std::string origin = "com";
@@ -50,24 +50,19 @@ private:
   Clock::time_point start_ = Clock::now(), last_ = start_;
 };
 
-OriginChoice parse_origin(const std::string& text) {
-  if (text == "com") return {};
-  if (text == "mesh") return {"mesh", Vec3::Zero()};
-  if (const auto point = parse_point(text)) return {"given", *point};
-  throw Error(Fault::bad_argument,
-              fmt::format("--origin {}: it must be com, mesh or three numbers X,Y,Z in mesh coordinates", text));
-}
-
 FlowChoice flow_choice(const Options& options, const ExpansionChoice& choice) {
   if (options.flow_options && (choice.maps.empty() || choice.maps.back() != "flow"))
-    throw Error(Fault::bad_argument,
-                fmt::format("--time, --sheets and --refinements are about the flow, and --of {} does not ask for it; add "
-                            "--of flow",
-                            options.of));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format(
+            "--time, --sheets, --refinements and --flow-grid are about the flow, and --of {} does not ask for it; add "
+            "--of flow",
+            options.of));
   FlowChoice flow;
   flow.time = parse_flow_time(options.time);
   flow.sheets = options.sheets == "signed";
   flow.refinements = options.refinements;
+  flow.grid_degree = options.flow_grid;
   if (choice.paper && (flow.time > 0 || flow.sheets))
     throw Error(Fault::bad_argument, "--recipe paper sets the time, 0.2, and how folds are met: leave --time and "
                                      "--sheets out");
@@ -255,12 +250,13 @@ void add_expand(CLI::App& app, Common& common) {
           "Take the map of --of from FILE.ply, which `cowgpu map MESH -o FILE.ply` wrote, instead of making it")
       ->check([](const std::string& path) { return std::string(path.empty() ? "the name is empty" : ""); })
       ->type_name("FILE");
-  CLI::Option* time = command
-                          ->add_option("--time", options->time,
-                                       "flow: T, how far the body is inflated, in the mesh's length unit; auto: the least "
-                                       "for which it is star-shaped about the origin")
-                          ->type_name("auto|T")
-                          ->capture_default_str();
+  CLI::Option* time =
+      command
+          ->add_option("--time", options->time,
+                       "flow: T, how far the body is inflated, in the mesh's length unit; auto: the least "
+                       "for which it is star-shaped about the origin")
+          ->type_name("auto|T")
+          ->capture_default_str();
   CLI::Option* sheets =
       command
           ->add_option("--sheets", options->sheets,
@@ -274,6 +270,12 @@ void add_expand(CLI::App& app, Common& common) {
                                  ->check(CLI::Range(1, 5))
                                  ->type_name("N")
                                  ->capture_default_str();
+  CLI::Option* grid = command
+                          ->add_option("--flow-grid", options->flow_grid,
+                                       "flow: least degree of the grid on which the level set is met")
+                          ->check(CLI::Range(64, largest_grid_degree))
+                          ->type_name("N")
+                          ->capture_default_str();
   command->add_flag("--aliasing", options->aliasing,
                     "Estimate the aliasing of surface expansions, degree by degree (the paper's recipe always does)");
   command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
@@ -297,8 +299,8 @@ void add_expand(CLI::App& app, Common& common) {
       ->allow_extra_args(false);
   command->add_flag("--dry-run", options->dry_run, "Print the plan and the memory it needs, and stop");
   add_common_options(*command, common);
-  command->callback([options, &common, time, sheets, refinements] {
-    options->flow_options = time->count() + sheets->count() + refinements->count() > 0;
+  command->callback([options, &common, time, sheets, refinements, grid] {
+    options->flow_options = time->count() + sheets->count() + refinements->count() + grid->count() > 0;
     run(*options, common);
   });
 }

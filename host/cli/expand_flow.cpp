@@ -15,26 +15,15 @@ namespace cowgpu::cli {
 namespace {
 
 constexpr double paper_time = 0.2;
-constexpr double sheet_tolerance = 1e-6;
+constexpr double flow_tolerance = 1e-6;
 constexpr double star_tolerance = 1e-6; // in diagonals
-// Where the flow's sutures cut the fields, a grid's error falls slowly.
-constexpr int level_set_grid_degree = 1024;
-
-FlowPoints flow_vertices(const ManifoldSurface& surface, double time, Backend& backend, Monitor& monitor,
-                         FlowReport& report) {
-  const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), flow_threads(backend));
-  FlowOptions options;
-  options.time = time;
-  options.tolerance = sheet_tolerance;
-  return flow->flow(surface.vertices(), vertex_normals(surface.vertices(), surface.faces()), options, monitor, &report);
-}
 
 // Each meaning fills in flow, map, expansion and report.
 
-void level_set(double time, ExpandSurfaceOptions options, const ManifoldSurface& surface, Backend& backend,
-               Monitor& monitor, SurfaceResult& result) {
+void level_set(double time, int grid_degree, ExpandSurfaceOptions options, const ManifoldSurface& surface,
+               Backend& backend, Monitor& monitor, SurfaceResult& result) {
   FlowResult& flow = *result.flow;
-  options.grid_degree = std::max(level_set_grid_degree, surface_grid_degree(options.lmax));
+  options.grid_degree = std::max(grid_degree, surface_grid_degree(options.lmax));
   options.estimate_aliasing = true; // the uncertainty
   LevelSetExpansion found = expand_level_set(surface.closed().mesh(), time, options, backend, monitor);
   flow.time = found.time;
@@ -44,7 +33,7 @@ void level_set(double time, ExpandSurfaceOptions options, const ManifoldSurface&
   result.expansion = std::move(found.expansion);
   result.report = std::move(found.report);
   const auto start = Clock::now();
-  const FlowPoints ends = flow_vertices(surface, flow.time, backend, monitor, flow.points);
+  const FlowPoints ends = flow_vertices(surface, flow.time, flow_threads(backend), monitor, flow.points);
   result.map = direction_map(ends.positions, options.origin);
   result.map_seconds = seconds_since(start);
 }
@@ -52,7 +41,7 @@ void level_set(double time, ExpandSurfaceOptions options, const ManifoldSurface&
 SheetExpansion signed_sheets(const FlowChoice& choice, double time, const ExpandSurfaceOptions& options,
                              const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
   const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), flow_threads(backend));
-  return expand_sheets(surface.closed().mesh(), time, choice.refinements, sheet_tolerance, options, *flow, backend,
+  return expand_sheets(surface.closed().mesh(), time, choice.refinements, flow_tolerance, options, *flow, backend,
                        monitor);
 }
 
@@ -69,8 +58,8 @@ void sheets(const FlowChoice& choice, const ExpandSurfaceOptions& options, const
   result.report = std::move(found.report);
   const auto start = Clock::now();
   FlowReport of_vertices;
-  result.map =
-      direction_map(flow_vertices(surface, flow.time, backend, monitor, of_vertices).positions, options.origin);
+  result.map = direction_map(flow_vertices(surface, flow.time, flow_threads(backend), monitor, of_vertices).positions,
+                             options.origin);
   result.map_seconds = seconds_since(start);
 }
 
@@ -112,7 +101,7 @@ void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const Ma
   else if (how.sheets)
     sheets(how, options, surface, backend, monitor, result);
   else
-    level_set(how.time, options, surface, backend, monitor, result);
+    level_set(how.time, how.grid_degree, options, surface, backend, monitor, result);
   if (flow.time < flow.star.upper) result.map.notes.push_back(star_shape_sentence(flow.star, flow.time));
 }
 
@@ -120,7 +109,7 @@ MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_
   const std::uint64_t vertices = faces / 2 + 2;
   if (!paper && !choice.sheets) {
     // A grid of its own: positions, the six fields, and a batch of rays.
-    const std::uint64_t points = 2 * std::uint64_t(level_set_grid_degree + 1) * (level_set_grid_degree + 1);
+    const std::uint64_t points = 2 * std::uint64_t(choice.grid_degree + 1) * std::uint64_t(choice.grid_degree + 1);
     MemoryNeed need = backend.distance_field_memory(vertices, faces, std::uint64_t(1) << 18);
     need.host += points * 9 * sizeof(double);
     return need;
@@ -130,6 +119,15 @@ MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_
   MemoryNeed need = backend.distance_field_memory(vertices, faces, vertices);
   need.host += times * (vertices * 200 + faces * 120);
   return need;
+}
+
+FlowPoints flow_vertices(const ManifoldSurface& surface, double time, unsigned threads, Monitor& monitor,
+                         FlowReport& report) {
+  const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), threads);
+  FlowOptions options;
+  options.time = time;
+  options.tolerance = flow_tolerance;
+  return flow->flow(surface.vertices(), vertex_normals(surface.vertices(), surface.faces()), options, monitor, &report);
 }
 
 StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor) {

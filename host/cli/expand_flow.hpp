@@ -17,6 +17,10 @@ MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_
 /// The star-shape time of a mesh about an origin, as precisely as every command takes it.
 StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor);
 
+/// The mesh's vertices along their normals for `time`, on so many threads (0: all).
+FlowPoints flow_vertices(const ManifoldSurface& surface, double time, unsigned threads, Monitor& monitor,
+                         FlowReport& report);
+
 /// The time a command flows for: the given one, or for 0 that bound of the star-shape time which is surely enough.
 /// Throws Error(map_failed) where none was found.
 double flow_time(double given, const StarShapeTime& star);

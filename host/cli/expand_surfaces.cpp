@@ -105,7 +105,10 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
     throw Error(Fault::bad_argument,
                 fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
                             "with --of harmonic, stretch or smooth",
-                            map_file, of, choice.maps.empty() ? "none" : choice.maps.size() > 1 ? "several" : "the flow, which is no map in a file"));
+                            map_file, of,
+                            choice.maps.empty()      ? "none"
+                            : choice.maps.size() > 1 ? "several"
+                                                     : "the flow, which is no map in a file"));
   return choice;
 }
 

@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   cli::add_spectrum(app, common);
   cli::add_map(app, common);
   cli::add_reconstruct(app, common);
+  cli::add_inflate(app, common);
   cli::add_distance(app, common);
   cli::add_inspect(app, common);
   cli::add_devices(app, common);

@@ -1,5 +1,6 @@
 #include "host/cli/commands.hpp"
 
+#include "host/cli/expand_flow.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/map_file.hpp"
@@ -30,6 +31,7 @@ struct Options {
   bool converge = false;
   unsigned relabellings = 0;
   int lmax = 512;
+  std::string time = "auto", origin = "com";
   std::string output;
   bool json = false;
 };
@@ -94,8 +96,25 @@ SphereMap make_map(const Options& options, const ManifoldSurface& surface, Monit
   return stretch_map(surface, stretch_options(options), monitor);
 }
 
+// The mesh's vertices where the flow brings them, seen from the origin.
+SphereMap make_flow_map(const Options& options, const Common& common, const ManifoldSurface& surface, Monitor& monitor,
+                        FlowMapReport& report) {
+  const auto backend = make_cpu_backend(common.threads);
+  report.origin = make_body(surface.closed(), parse_origin(options.origin), 1).origin;
+  report.star = find_star_shape_time(surface.closed().mesh(), report.origin, *backend, monitor);
+  const double given = parse_flow_time(options.time);
+  report.time_choice = given > 0 ? "given" : "auto";
+  report.time = flow_time(given, report.star);
+  const FlowPoints ends = flow_vertices(surface, report.time, flow_threads(*backend), monitor, report.points);
+  return direction_map(ends.positions, report.origin);
+}
+
 void run(const Options& options, const Common& common) {
   if (options.method == "harmonic") harmonic_options(options); // words that mean nothing, before files are touched
+  if (options.method == "flow") {
+    parse_flow_time(options.time);
+    parse_origin(options.origin);
+  }
   const MapFormat format = options.output.empty() ? MapFormat::ply : map_format(options.output);
   std::unique_ptr<AtomicFile> file; // before long work: what cannot be written should fail now
   if (!options.output.empty()) refuse_same_file(options.mesh, options.output);
@@ -115,7 +134,9 @@ void run(const Options& options, const Common& common) {
   report.created = utc_now();
   report.mesh = &surface.closed().mesh();
   auto start = Clock::now();
-  const SphereMap map = make_map(options, surface, monitor);
+  const SphereMap map = options.method == "flow"
+                            ? make_flow_map(options, common, surface, monitor, report.flow.emplace())
+                            : make_map(options, surface, monitor);
   report.map = &map;
   report.map_seconds = seconds_since(start);
   monitor.clear();
@@ -161,8 +182,9 @@ void add_map(CLI::App& app, Common& common) {
       ->add_option(
           "--method", options->method,
           "stretch (the default: every part of the body keeps room on the sphere, and no triangle is flipped), "
-          "harmonic or smooth (both conformal: limbs shrink to points)")
-      ->check(CLI::IsMember({"harmonic", "stretch", "smooth"}))
+          "harmonic or smooth (both conformal: limbs shrink to points), or flow (along the distance's gradient: folds "
+          "over itself)")
+      ->check(CLI::IsMember({"harmonic", "stretch", "smooth", "flow"}))
       ->type_name("NAME");
   CLI::Option* weights = command->add_option("--weights", options->weights, "harmonic: what an edge weighs")
                              ->check(CLI::IsMember({"cotangent", "mean-value", "tutte"}))
@@ -213,6 +235,16 @@ void add_map(CLI::App& app, Common& common) {
           ->check(CLI::Range(0U, 10000U))
           ->type_name("N")
           ->capture_default_str();
+  CLI::Option* time = command
+                          ->add_option("--time", options->time,
+                                       "flow: for how long, in the mesh's length unit; auto: until the inflated body "
+                                       "is star-shaped about the origin")
+                          ->type_name("auto|T")
+                          ->capture_default_str();
+  CLI::Option* origin = command
+                            ->add_option("--origin", options->origin,
+                                         "flow: where directions are seen from: com (centre of mass), mesh or X,Y,Z")
+                            ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degree of the grid that the map is judged against")
       ->check(CLI::Range(1, largest_grid_degree))
       ->type_name("L")
@@ -224,10 +256,10 @@ void add_map(CLI::App& app, Common& common) {
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.map.v1.json)");
   add_common_options(*command, common);
   command->footer("Examples: cowgpu map benchmark -o cow.ply; cowgpu map benchmark --recipe paper --lmax 256");
-  const std::vector<Belonging> belongings = {{weights, "harmonic"},    {pole, "harmonic"},   {scale, "harmonic"},
-                                             {centre, "harmonic"},     {polish, "harmonic"}, {recipe, "harmonic"},
-                                             {sweeps, "stretch"},      {lambda, "stretch"},  {converge, "stretch"},
-                                             {relabellings, "stretch"}};
+  const std::vector<Belonging> belongings = {{weights, "harmonic"},     {pole, "harmonic"},   {scale, "harmonic"},
+                                             {centre, "harmonic"},      {polish, "harmonic"}, {recipe, "harmonic"},
+                                             {sweeps, "stretch"},       {lambda, "stretch"},  {converge, "stretch"},
+                                             {relabellings, "stretch"}, {time, "flow"},       {origin, "flow"}};
   command->callback([options, &common, belongings] {
     if (options->method.empty()) options->method = options->recipe.empty() ? "stretch" : "harmonic";
     refuse_strangers(belongings, options->method);

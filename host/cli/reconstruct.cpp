@@ -1,11 +1,10 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/order_list.hpp"
+#include "host/cli/surface_outputs.hpp"
 #include "host/cli/surface_source.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
-#include "host/io/glb.hpp"
-#include "host/io/ply.hpp"
 #include "host/io/surface_file.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/order_names.hpp"
@@ -16,14 +15,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <map>
-#include <system_error>
 
 namespace cowgpu::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Options {
   SurfaceChoice source{"builtin:cow", "", "", -1};
@@ -33,78 +27,6 @@ struct Options {
   std::size_t samples = 20000;
   std::string output, format;
   bool json = false;
-};
-
-// Where the body of each order goes: a file, a file with {} for the order, or a folder.
-class Outputs {
-public:
-  Outputs(const std::string& output, const std::string& format, std::size_t orders) : output_(output) {
-    if (output.empty()) {
-      if (!format.empty()) fail("--format is about files, and there is no -o");
-      return;
-    }
-    const std::string suffix = fs::path(output).extension();
-    folder_ = suffix != ".ply" && suffix != ".glb";
-    if (folder_) {
-      if (!suffix.empty() && !fs::is_directory(output))
-        fail(fmt::format("-o {}: a file's name must end in .glb or .ply; a folder has no suffix", output));
-      suffix_ = "." + (format.empty() ? "glb" : format);
-      return;
-    }
-    suffix_ = suffix;
-    if (!format.empty() && suffix != "." + format)
-      fail(fmt::format("-o {}: the name and --format {} contradict each other", output, format));
-    if (orders > 1 && output.find("{}") == std::string::npos)
-      fail(fmt::format("-o {}: there are {} orders and one file; put {{}} for the order into the name, or name a "
-                       "folder",
-                       output, orders));
-  }
-
-  bool any() const { return !output_.empty(); }
-
-  /// Opens the file of an order, so that what cannot be written fails early.
-  void open(int order) {
-    if (!any() || files_.contains(order)) return;
-    if (folder_) {
-      std::error_code reason;
-      fs::create_directories(output_, reason);
-      if (reason) throw Error(Fault::cannot_write, fmt::format("{}: cannot be made: {}.", output_, reason.message()));
-    }
-    files_[order] = std::make_unique<AtomicFile>(path(order));
-  }
-
-  std::string write(int order, const TriangleSurface& surface, const std::vector<std::string>& facts) {
-    open(order);
-    AtomicFile& file = *files_.at(order);
-    if (suffix_ == ".ply")
-      write_ply(surface, facts, file);
-    else {
-      GlbAbout about;
-      for (const std::string& fact : facts)
-        about.facts.emplace_back(fact.substr(0, fact.find(' ')), fact.substr(fact.find(' ') + 1));
-      GlbPart part{&surface};
-      part.numbers = {{"order", double(order)}};
-      write_glb(std::span(&part, 1), about, file);
-    }
-    file.commit();
-    files_.erase(order);
-    return path(order);
-  }
-
-private:
-  [[noreturn]] static void fail(const std::string& sentence) { throw Error(Fault::bad_argument, sentence); }
-
-  std::string path(int order) const {
-    if (folder_) return fs::path(output_) / fmt::format("order-{:04}{}", order, suffix_);
-    std::string name = output_;
-    const std::size_t braces = name.find("{}");
-    if (braces != std::string::npos) name.replace(braces, 2, std::to_string(order));
-    return name;
-  }
-
-  std::string output_, suffix_;
-  bool folder_ = false;
-  std::map<int, std::unique_ptr<AtomicFile>> files_;
 };
 
 // Passes on the wish to stop, and keeps quiet about the parts of an order, which are short.
@@ -127,7 +49,11 @@ int resolution_of(const Options& options, int order) {
   return options.resolution > 0 ? options.resolution : default_resolution(order);
 }
 
-RebuiltOrder rebuild(const Options& options, const ReconstructReport& report, int order, Outputs& outputs,
+OutputKey order_key(int order) {
+  return {std::to_string(order), fmt::format("order-{:04}", order)};
+}
+
+RebuiltOrder rebuild(const Options& options, const ReconstructReport& report, int order, SurfaceOutputs& outputs,
                      unsigned threads, Backend& backend, Monitor& monitor) {
   const auto start = Clock::now();
   RebuiltOrder result;
@@ -145,11 +71,12 @@ RebuiltOrder rebuild(const Options& options, const ReconstructReport& report, in
   if (outputs.any()) {
     check_stop(monitor);
     result.output =
-        outputs.write(order, surface,
+        outputs.write(order_key(order), surface,
                       {fmt::format("order {}, {}", order, order_name(order)),
                        "shape " + describe_order(*report.expansion, report.fields, order),
                        fmt::format("expansion {}, lmax {}", report.name, report.expansion->coefficients.lmax),
-                       "mesh " + report.mesh, "mesh_sha256 " + report.mesh_hash});
+                       "mesh " + report.mesh, "mesh_sha256 " + report.mesh_hash},
+                      {"order", double(order)});
   }
   result.seconds = seconds_since(start);
   return result;
@@ -164,8 +91,8 @@ void run(const Options& options, const Common& common) {
   if (options.resolution > 0 && options.resolution < largest)
     throw Error(Fault::bad_argument, fmt::format("--resolution {} cannot show order {}; it must be at least the order",
                                                  options.resolution, largest));
-  Outputs outputs(options.output, options.format, orders.empty() ? 9 : orders.size());
-  outputs.open(orders.empty() ? 0 : orders.front());
+  SurfaceOutputs outputs(options.output, options.format, orders.empty() ? 9 : orders.size(), "order");
+  outputs.open(order_key(orders.empty() ? 0 : orders.front()));
 
   std::string note;
   const auto backend = open_backend(common, &note);
@@ -239,9 +166,10 @@ void add_reconstruct(CLI::App& app, Common& common) {
       ->type_name("LIST")
       ->allow_extra_args(false);
   command
-      ->add_option("--method,--of", options->source.of,
-                   "Of a mesh the map: stretch (default), harmonic, smooth or flow; of a file the name of the expansion "
-                   "(stretch where there is one)")
+      ->add_option(
+          "--method,--of", options->source.of,
+          "Of a mesh the map: stretch (default), harmonic, smooth or flow; of a file the name of the expansion "
+          "(stretch where there is one)")
       ->type_name("NAME");
   command
       ->add_option("--fields", options->fields,

@@ -1,5 +1,6 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/order_list.hpp"
+#include "host/cli/scene.hpp"
 #include "host/cli/surface_source.hpp"
 
 #include "host/clock.hpp"
@@ -14,8 +15,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <span>
 
 namespace cowgpu::cli {
 namespace {
@@ -68,33 +67,6 @@ std::vector<TriangleSurface> bodies(const Options& options, std::vector<int> ord
   return found;
 }
 
-// One panel for each body and view, all to one scale; bodies of a view keep their places in the panel.
-RenderScene scene_of(const Options& options, std::span<const TriangleSurface> bodies, std::span<const View> views) {
-  RenderScene scene;
-  scene.panel_width = options.width;
-  scene.panel_height = options.height;
-  scene.transparent = options.transparent;
-  double height = 0;
-  for (const View& view : views) {
-    RenderPanel together;
-    together.view = view;
-    for (const TriangleSurface& body : bodies) together.surfaces.push_back({body.vertices, body.faces, body.normals});
-    fit(together, scene.panel_width, scene.panel_height);
-    height = std::max(height, together.height);
-    for (const RenderSurface& surface : together.surfaces) {
-      RenderPanel& panel = scene.panels.emplace_back(together);
-      panel.surfaces = {surface};
-    }
-  }
-  for (RenderPanel& panel : scene.panels) panel.height = height;
-  const int panels = int(scene.panels.size());
-  scene.columns = options.columns > 0                     ? std::min(options.columns, panels)
-                  : bodies.size() > 1 && views.size() > 1 ? int(bodies.size())
-                  : panels <= 4                           ? panels
-                                                          : int(std::ceil(std::sqrt(panels)));
-  return scene;
-}
-
 void run(const Options& given, const Common& common) {
   Options options = given;
   if (!options.output.ends_with(".png") || options.output.size() == 4)
@@ -132,7 +104,8 @@ void run(const Options& given, const Common& common) {
     else if (body.normals.empty())
       body.normals = vertex_normals(body.vertices, body.faces);
   }
-  const RenderScene scene = scene_of(options, shown, views);
+  const RenderScene scene =
+      scene_of(shown, views, {options.width, options.height, options.columns, options.transparent});
   const auto start = Clock::now();
   const Image image = backend->render(scene, monitor);
   const double seconds = seconds_since(start);

@@ -75,17 +75,20 @@ std::string star_shape_text(const StarShapeTime& star) {
     return fmt::format("no time was proven from which the inflated body is star-shaped about the origin; before "
                        "{:.9g} it is not",
                        star.lower);
-  std::string text = fmt::format("star-shaped about the origin from t* on, {:.9g} <= t* <= {:.9g}", star.lower, star.upper);
-  if (star.lower > 0) text += fmt::format(" (witness at {}, inflated from {})", point_text(star.place), point_text(star.point));
+  std::string text =
+      fmt::format("star-shaped about the origin from t* on, {:.9g} <= t* <= {:.9g}", star.lower, star.upper);
+  if (star.lower > 0)
+    text += fmt::format(" (witness at {}, inflated from {})", point_text(star.place), point_text(star.point));
   return text + fmt::format(", from {} regions", star.regions);
 }
 
 std::string star_shape_sentence(const StarShapeTime& star, double time) {
   if (time >= star.upper) return "the inflated body is star-shaped: the map is one-to-one";
   if (time < star.lower)
-    return fmt::format("warning: T = {:.6g} is before t* = {:.6g}: the inflated body is not star-shaped, and the map is "
-                       "not one-to-one",
-                       time, star.lower);
+    return fmt::format(
+        "warning: T = {:.6g} is before t* = {:.6g}: the inflated body is not star-shaped, and the map is "
+        "not one-to-one",
+        time, star.lower);
   return "whether the inflated body is star-shaped at T is not decided: T lies between the bounds of t*";
 }
 
@@ -111,11 +114,10 @@ std::string flow_points_text(const FlowReport& points) {
 }
 
 ordered_json flow_points_json(const FlowReport& points) {
-  ordered_json json = {{"points", points.points},         {"slid", points.slid},
-                       {"stationary", points.stationary}, {"inside", points.inside},
-                       {"restarted", points.restarted},   {"unfinished", points.unfinished},
-                       {"queries", points.queries},       {"events", points.events},
-                       {"steps", points.steps},           {"seconds", points.seconds}};
+  ordered_json json = {{"points", points.points},   {"slid", points.slid},           {"stationary", points.stationary},
+                       {"inside", points.inside},   {"restarted", points.restarted}, {"unfinished", points.unfinished},
+                       {"queries", points.queries}, {"events", points.events},       {"steps", points.steps},
+                       {"seconds", points.seconds}};
   if (points.slid > 0) {
     json["first_slide"] = points.first_slide;
     json["median_slide"] = points.median_slide;
@@ -129,7 +131,7 @@ ordered_json flow_json(const FlowResult& flow) {
                        {"time", flow.time},
                        {"time_choice", flow.time_choice},
                        {"star_shape", star_shape_json(flow.star)},
-                       {"one_to_one", flow.time >= flow.star.upper ? ordered_json(true)
+                       {"one_to_one", flow.time >= flow.star.upper  ? ordered_json(true)
                                       : flow.time < flow.star.lower ? ordered_json(false)
                                                                     : ordered_json()},
                        {"points", flow_points_json(flow.points)},
@@ -153,15 +155,15 @@ void write_flow_screen(const FlowResult& flow, const std::function<void(std::str
   if (flow.points.points > 0) sink("  flow: " + flow_points_text(flow.points) + "\n");
   for (std::size_t k = 0; k < flow.sheets.size(); ++k) {
     const SheetReport& s = flow.sheets[k];
-    sink(fmt::format("  flow: refinement {}: {} of {} triangles folded over, at most {} sheets, degree {:.6g} to {:.6g}\n",
-                     k, s.flipped_faces, s.faces, s.most_sheets, s.least_degree, s.largest_degree));
+    sink(fmt::format(
+        "  flow: refinement {}: {} of {} triangles folded over, at most {} sheets, degree {:.6g} to {:.6g}\n", k,
+        s.flipped_faces, s.faces, s.most_sheets, s.least_degree, s.largest_degree));
   }
   if (flow.level_set)
-    sink(fmt::format("  flow: level set met to {:.1e} with {} closest points; least slope along a ray {:.3g}{}\n",
-                     flow.level_set->largest_residual, flow.level_set->queries, flow.level_set->least_slope,
-                     flow.level_set->unsettled > 0
-                         ? fmt::format("; {} directions not settled", flow.level_set->unsettled)
-                         : ""));
+    sink(fmt::format(
+        "  flow: level set met to {:.1e} with {} closest points; least slope along a ray {:.3g}{}\n",
+        flow.level_set->largest_residual, flow.level_set->queries, flow.level_set->least_slope,
+        flow.level_set->unsettled > 0 ? fmt::format("; {} directions not settled", flow.level_set->unsettled) : ""));
 }
 
 } // namespace cowgpu

@@ -22,12 +22,12 @@ struct ConvergedTable {
 
 /// How a surface was expanded over the distance's flow (host/flow/flow_map.hpp).
 struct FlowResult {
-  std::string meaning;         ///< "level-set", "sheets" or "paper"
-  double time = 0;             ///< T, mesh length unit
-  std::string time_choice;     ///< "auto" (the star-shape time), "given" or "paper"
-  StarShapeTime star;          ///< about the expansion's origin
-  double star_seconds = 0;     ///< of the search, where it is no part of the expansion
-  FlowReport points;           ///< of the mesh's vertices, or of the finest refinement's
+  std::string meaning;             ///< "level-set", "sheets" or "paper"
+  double time = 0;                 ///< T, mesh length unit
+  std::string time_choice;         ///< "auto" (the star-shape time), "given" or "paper"
+  StarShapeTime star;              ///< about the expansion's origin
+  double star_seconds = 0;         ///< of the search, where it is no part of the expansion
+  FlowReport points;               ///< of the mesh's vertices, or of the finest refinement's
   std::vector<SheetReport> sheets; ///< of each refinement, the mesh itself first
   std::optional<LevelSetReport> level_set;
   /// [degree][field], the largest over m; empty where none is known (the paper's recipe).

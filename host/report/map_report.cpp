@@ -1,6 +1,7 @@
 #include "host/report/map_report.hpp"
 
 #include "host/mesh/topology.hpp"
+#include "host/report/flow_result.hpp"
 #include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
@@ -108,6 +109,13 @@ void write_screen(const MapReport& report, const Sink& sink) {
   sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", report.map->method, report.map_seconds,
                    report.judge_seconds));
   for (const std::string& note : report.map->notes) sink("note: " + note + "\n");
+  if (report.flow) {
+    sink(fmt::format("flow: for T = {:.9g} ({}), {}\n", report.flow->time,
+                     report.flow->time_choice == "auto" ? "the least time that is star-shaped" : "given",
+                     flow_points_text(report.flow->points)));
+    sink("flow: " + star_shape_text(report.flow->star) + "\n");
+    sink("flow: " + star_shape_sentence(report.flow->star, report.flow->time) + "\n");
+  }
   sink(fmt::format("judged against a grid for lmax {}, whose cells are {:.3g} degrees ({:.3e} rad) high:\n", q.lmax,
                    q.cell * 180 / std::numbers::pi, q.cell));
   row("flipped triangles", count_text(mesh, q.flipped));
@@ -132,7 +140,7 @@ void write_json(const MapReport& report, const Sink& sink) {
   const RawMesh& mesh = *report.mesh;
   std::vector<std::string> notes = mesh.notes;
   notes.insert(notes.end(), report.map->notes.begin(), report.map->notes.end());
-  const ordered_json all = {
+  ordered_json all = {
       {"schema", "cowgpu.map.v1"},
       {"program", program_json()},
       {"command", report.command},
@@ -149,6 +157,14 @@ void write_json(const MapReport& report, const Sink& sink) {
       {"stretch", stretch_json(report)},
       {"timings",
        {{"map", report.map_seconds}, {"judge", report.judge_seconds}, {"relabellings", report.repeat_seconds}}}};
+  if (report.flow) {
+    const FlowMapReport& flow = *report.flow;
+    all["flow"] = {{"time", flow.time},
+                   {"time_choice", flow.time_choice},
+                   {"origin", {flow.origin.x(), flow.origin.y(), flow.origin.z()}},
+                   {"star_shape", star_shape_json(flow.star)},
+                   {"points", flow_points_json(flow.points)}};
+  }
   sink(json_text(all) + "\n");
 }
 

@@ -1,6 +1,8 @@
 // A map to the sphere and what it is worth, ready to be shown.
 #pragma once
 
+#include "host/flow.hpp"
+#include "host/flow/star_shape.hpp"
 #include "host/map/quality.hpp"
 #include "host/map/stretch_repeats.hpp"
 #include "host/report/result.hpp"
@@ -11,6 +13,15 @@
 
 namespace cowgpu {
 
+/// Of the map that the distance's flow makes.
+struct FlowMapReport {
+  double time = 0;
+  std::string time_choice; ///< "auto" or "given"
+  Vec3 origin = Vec3::Zero();
+  StarShapeTime star;
+  FlowReport points;
+};
+
 /// Result of `map`.
 struct MapReport {
   std::vector<std::string> command; ///< as typed
@@ -20,6 +31,7 @@ struct MapReport {
   MapQuality quality;
   std::optional<StretchMeasure> stretch;                         ///< of the stretch map
   std::vector<StretchRepeat> repeats;                            ///< of the stretch map, if they were asked for
+  std::optional<FlowMapReport> flow;                             ///< of the flow
   std::string output;                                            ///< the file written, or empty
   double map_seconds = 0, judge_seconds = 0, repeat_seconds = 0; ///< wall time
 };

@@ -16,8 +16,8 @@
 namespace cowgpu {
 
 struct SurfaceResult {
-  std::string name; ///< key among the expansions: "harmonic", "stretch", "smooth" or "flow"
-  SphereMap map;    ///< of the flow: where the mesh's vertices come to, seen from the origin
+  std::string name;                 ///< key among the expansions: "harmonic", "stretch", "smooth" or "flow"
+  SphereMap map;                    ///< of the flow: where the mesh's vertices come to, seen from the origin
   std::string map_file, map_sha256; ///< the file that the map was read from (method "file"), or empty
   std::string recipe;               ///< "default" or "paper"
   std::string origin_kind;          ///< as in Body

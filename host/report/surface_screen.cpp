@@ -45,8 +45,9 @@ std::string verdict_text(const std::array<double, 3>& distances, const std::arra
 void write_beside_paper(const SurfaceResult& result, const std::function<void(std::string_view)>& sink) {
   const SurfaceExpansion &expansion = result.expansion, &converged = converged_expansion(result);
   const auto table = paper_table(result);
-  sink(fmt::format("\nbeside the paper's table (Higher multipoles of the cow, {}; the means of the angles are dropped)\n",
-                   result.flow ? "gradient flow of the distance" : "harmonic map"));
+  sink(fmt::format(
+      "\nbeside the paper's table (Higher multipoles of the cow, {}; the means of the angles are dropped)\n",
+      result.flow ? "gradient flow of the distance" : "harmonic map"));
   sink(fmt::format("  {:>2} {:>2}", "l", "m"));
   for (int f = 0; f < 3; ++f) sink(fmt::format("  {:<16} {:<16}", surface_field_names[std::size_t(f)], "paper"));
   sink("\n");
@@ -61,9 +62,10 @@ void write_beside_paper(const SurfaceResult& result, const std::function<void(st
 
   const std::string within = fields_text(converged_within(result), 3);
   if (result.flow)
-    sink(fmt::format("\nconverged values of signed sheets, extrapolated over {} refinements, and how far the paper's are "
-                     "from them;\nuncertain by at most {}\n",
-                     result.flow->sheets.size() - 1, within));
+    sink(fmt::format(
+        "\nconverged values of signed sheets, extrapolated over {} refinements, and how far the paper's are "
+        "from them;\nuncertain by at most {}\n",
+        result.flow->sheets.size() - 1, within));
   else
     sink(fmt::format(
         "\nconverged values, and how far the paper's are from them: a grid of half the {} rings moves degrees "
@@ -103,8 +105,8 @@ const SurfaceExpansion& converged_expansion(const SurfaceResult& result) {
 }
 
 std::array<double, 6> converged_within(const SurfaceResult& result) {
-  return largest_of(result.flow && result.flow->converged ? result.flow->converged->uncertainty : result.report.aliasing,
-                    3);
+  return largest_of(
+      result.flow && result.flow->converged ? result.flow->converged->uncertainty : result.report.aliasing, 3);
 }
 
 void write_surface_screen(const SurfaceResult& result, const std::function<void(std::string_view)>& sink) {

@@ -21,8 +21,7 @@ void check(const ExpandSurfaceOptions& options) {
   if (options.lmax < 0 || options.lmax > largest_surface_degree)
     throw Error(Fault::bad_argument,
                 fmt::format("surfaces are expanded to degree 0 to {}, not {}", largest_surface_degree, options.lmax));
-  if (options.grid_degree != 0 &&
-      (options.grid_degree < 2 * options.lmax || options.grid_degree > largest_grid_degree))
+  if (options.grid_degree != 0 && (options.grid_degree < 2 * options.lmax || options.grid_degree > largest_grid_degree))
     throw Error(Fault::bad_argument, fmt::format("a grid of degree {} is not what degree {} can be sampled on",
                                                  options.grid_degree, options.lmax));
   if (!options.origin.allFinite()) throw Error(Fault::bad_argument, "the origin of an expansion must be finite");

@@ -20,7 +20,7 @@ struct ExpandSurfaceOptions {
   /// (Backend::sample).
   bool closest_point = false;
   bool signed_dphi = true; ///< false: expand |f_dphi|, as the paper's table does
-  int grid_degree = 0; ///< of the grid sampled on, at least 2 lmax; 0: surface_grid_degree(lmax)
+  int grid_degree = 0;     ///< of the grid sampled on, at least 2 lmax; 0: surface_grid_degree(lmax)
   /// Expand once more on the grid of half the degree, with a quarter of the points, for ExpandSurfaceReport::aliasing.
   bool estimate_aliasing = false;
 };

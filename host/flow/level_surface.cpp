@@ -1,0 +1,259 @@
+#include "host/flow/level_surface.hpp"
+
+#include "host/clock.hpp"
+#include "host/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+namespace cowgpu {
+namespace {
+
+constexpr int block = 4; // cubes along a side of what is looked at together
+constexpr int most_passes = 30;
+
+using Place = std::array<std::int64_t, 3>;
+
+// The six tetrahedra of a cube: from corner 0 to corner 7 along the axes in each order. Bits of a corner are x, y, z. Odd
+// orders turn the other way.
+struct Path {
+  std::array<int, 4> corners;
+  bool odd;
+};
+constexpr std::array<Path, 6> paths = {Path{{0, 1, 3, 7}, false}, Path{{0, 2, 6, 7}, false}, Path{{0, 4, 5, 7}, false},
+                                       Path{{0, 1, 5, 7}, true},  Path{{0, 2, 3, 7}, true},  Path{{0, 4, 6, 7}, true}};
+
+class Lattice {
+public:
+  Lattice(const Vec3& low, const Vec3& high, double level, int cells) {
+    const Vec3 sides = high - low + Vec3::Constant(2 * level);
+    cell_ = sides.maxCoeff() / cells;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double side = sides[Eigen::Index(c)];
+      // Two cubes to spare on each side; whole blocks.
+      const auto cubes = std::int64_t(std::ceil(side / cell_)) + 4;
+      counts_[c] = (cubes + block - 1) / block * block;
+      first_[Eigen::Index(c)] = (low[Eigen::Index(c)] + high[Eigen::Index(c)]) / 2 - double(counts_[c]) * cell_ / 2;
+    }
+  }
+  double cell() const { return cell_; }
+  const Place& cubes() const { return counts_; }
+  Vec3 at(double x, double y, double z) const { return first_ + cell_ * Vec3(x, y, z); }
+  std::uint64_t id(const Place& p) const {
+    return (std::uint64_t(p[2]) * std::uint64_t(counts_[1] + 1) + std::uint64_t(p[1])) * std::uint64_t(counts_[0] + 1) +
+           std::uint64_t(p[0]);
+  }
+  Place place(std::uint64_t id) const {
+    const auto nx = std::uint64_t(counts_[0] + 1), ny = std::uint64_t(counts_[1] + 1);
+    return {std::int64_t(id % nx), std::int64_t(id / nx % ny), std::int64_t(id / nx / ny)};
+  }
+
+private:
+  double cell_ = 0;
+  Place counts_{};
+  Vec3 first_;
+};
+
+Place corner_of(const Place& cube, int corner) {
+  return {cube[0] + (corner & 1), cube[1] + (corner >> 1 & 1), cube[2] + (corner >> 2 & 1)};
+}
+
+// Corners of the blocks of cubes that the level may pass: distances change no faster than places.
+std::vector<Place> near_blocks(DistanceField& field, const Lattice& lattice, double level, Monitor& monitor,
+                               LevelSurfaceReport& report) {
+  std::vector<Place> blocks;
+  std::vector<Vec3> middles;
+  const Place n = lattice.cubes();
+  for (std::int64_t z = 0; z < n[2]; z += block)
+    for (std::int64_t y = 0; y < n[1]; y += block)
+      for (std::int64_t x = 0; x < n[0]; x += block) {
+        blocks.push_back({x, y, z});
+        middles.push_back(lattice.at(double(x) + block / 2., double(y) + block / 2., double(z) + block / 2.));
+      }
+  const ClosestPoints closest = field.closest(middles, {}, monitor);
+  report.queries += middles.size();
+  const double reach = std::sqrt(3.0) / 2 * block * lattice.cell() * (1 + 1e-9);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    if (std::abs(closest.distance[i] - level) <= reach) blocks[kept++] = blocks[i];
+  blocks.resize(kept);
+  return blocks;
+}
+
+// Signed distances at the corners of the cubes.
+std::unordered_map<std::uint64_t, double> distances_at(DistanceField& field, const Lattice& lattice,
+                                                       const std::vector<Place>& blocks, Monitor& monitor,
+                                                       LevelSurfaceReport& report) {
+  std::vector<std::uint64_t> ids;
+  for (const Place& b : blocks)
+    for (int z = 0; z <= block; ++z)
+      for (int y = 0; y <= block; ++y)
+        for (int x = 0; x <= block; ++x) ids.push_back(lattice.id({b[0] + x, b[1] + y, b[2] + z}));
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  std::vector<Vec3> points;
+  points.reserve(ids.size());
+  for (const std::uint64_t id : ids) {
+    const Place p = lattice.place(id);
+    points.push_back(lattice.at(double(p[0]), double(p[1]), double(p[2])));
+  }
+  const ClosestPoints closest = field.closest(points, {}, monitor);
+  report.queries += points.size();
+  std::unordered_map<std::uint64_t, double> values;
+  values.reserve(ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) values.emplace(ids[i], closest.distance[i]);
+  return values;
+}
+
+struct EdgeHash {
+  std::size_t operator()(const std::array<std::uint64_t, 2>& edge) const {
+    return std::size_t(edge[0] * 0x9e3779b97f4a7c15ULL ^ (edge[1] + 0x7f4a7c15ULL) * 0xbf58476d1ce4e5b9ULL);
+  }
+};
+
+class Marching {
+public:
+  Marching(const Lattice& lattice, const std::unordered_map<std::uint64_t, double>& values, double level,
+           TriangleSurface& surface)
+      : lattice_(lattice), values_(values), level_(level), surface_(surface) {}
+
+  void cube(const Place& cube) {
+    std::array<std::uint64_t, 8> ids{};
+    std::array<double, 8> above{};
+    int outside = 0;
+    for (int k = 0; k < 8; ++k) {
+      const auto i = std::size_t(k);
+      ids[i] = lattice_.id(corner_of(cube, k));
+      above[i] = values_.at(ids[i]) - level_;
+      outside += above[i] >= 0;
+    }
+    if (outside == 0 || outside == 8) return;
+    ++cut;
+    for (const Path& path : paths) tetrahedron(path, ids, above);
+  }
+
+  std::uint64_t cut = 0;
+
+private:
+  std::uint32_t vertex(std::uint64_t a, double at_a, std::uint64_t b, double at_b) {
+    if (a > b) std::swap(a, b), std::swap(at_a, at_b);
+    const auto [found, is_new] = edges_.try_emplace({a, b}, std::uint32_t(surface_.vertices.size()));
+    if (!is_new) return found->second;
+    const Place p = lattice_.place(a), q = lattice_.place(b);
+    // Away from the corners, where the vertices of all their edges would fall together.
+    const double part = std::clamp(at_a / (at_a - at_b), 0.02, 0.98);
+    const auto mix = [&](std::size_t c) { return double(p[c]) + part * double(q[c] - p[c]); };
+    surface_.vertices.push_back(lattice_.at(mix(0), mix(1), mix(2)));
+    return found->second;
+  }
+
+  void tetrahedron(const Path& path, const std::array<std::uint64_t, 8>& ids, const std::array<double, 8>& above) {
+    // Inside first; an odd number of swaps turns it over.
+    std::array<std::size_t, 4> k{};
+    for (std::size_t i = 0; i < 4; ++i) k[i] = std::size_t(path.corners[i]);
+    bool odd = path.odd;
+    std::size_t inside = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      if (above[k[i]] < 0) {
+        if (i != inside) std::swap(k[i], k[inside]), odd = !odd;
+        ++inside;
+      }
+    const auto on = [&](std::size_t i, std::size_t j) {
+      return vertex(ids[k[i]], above[k[i]], ids[k[j]], above[k[j]]);
+    };
+    const auto put = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      if (odd)
+        surface_.faces.push_back({a, c, b});
+      else
+        surface_.faces.push_back({a, b, c});
+    };
+    // Of a tetrahedron with det(1 - 0, 2 - 0, 3 - 0) > 0.
+    if (inside == 1)
+      put(on(0, 1), on(0, 2), on(0, 3));
+    else if (inside == 3)
+      put(on(0, 3), on(1, 3), on(2, 3));
+    else if (inside == 2) {
+      const std::uint32_t a = on(0, 2), b = on(0, 3), c = on(1, 3), d = on(1, 2);
+      put(a, b, c);
+      put(a, c, d);
+    }
+  }
+
+  const Lattice& lattice_;
+  const std::unordered_map<std::uint64_t, double>& values_;
+  double level_;
+  TriangleSurface& surface_;
+  std::unordered_map<std::array<std::uint64_t, 2>, std::uint32_t, EdgeHash> edges_;
+};
+
+// Newton's method along the gradient, which has length 1.
+void move_onto(DistanceField& field, double level, double enough, double cell, Monitor& monitor,
+               TriangleSurface& surface, LevelSurfaceReport& report) {
+  surface.normals.assign(surface.vertices.size(), Vec3::UnitZ());
+  std::vector<std::uint32_t> left(surface.vertices.size());
+  for (std::size_t v = 0; v < left.size(); ++v) left[v] = std::uint32_t(v);
+  for (int pass = 0; pass < most_passes && !left.empty(); ++pass) {
+    check_stop(monitor);
+    std::vector<Vec3> places;
+    places.reserve(left.size());
+    for (const std::uint32_t v : left) places.push_back(surface.vertices[v]);
+    const ClosestPoints closest = field.closest(places, {}, monitor);
+    report.queries += places.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const double d = closest.distance[i];
+      const Vec3 away = places[i] - closest.point[i];
+      Vec3& normal = surface.normals[left[i]];
+      if (d != 0) normal = (d > 0 ? away : Vec3(-away)).normalized();
+      if (std::abs(d - level) <= enough || pass + 1 == most_passes) {
+        report.largest_residual = std::max(report.largest_residual, std::abs(d - level));
+        continue;
+      }
+      // Where two sheets meet a step goes to and fro between them: shorter ones end that.
+      const double step = (pass < 8 ? 1 : 0.5) * std::clamp(level - d, -cell / 2, cell / 2);
+      surface.vertices[left[i]] += step * normal;
+      left[kept++] = left[i];
+    }
+    left.resize(kept);
+  }
+}
+
+} // namespace
+
+TriangleSurface level_surface(DistanceField& field, const Vec3& low, const Vec3& high, double level, int cells,
+                              Monitor& monitor, LevelSurfaceReport* report) {
+  if (!(level > 0) || !std::isfinite(level))
+    throw Error(Fault::bad_argument, fmt::format("a body is inflated by a distance above 0, not {}", level));
+  if (cells < 4 || cells > 1024)
+    throw Error(Fault::bad_argument, fmt::format("a level set is looked for in 4 to 1024 cubes a side, not {}", cells));
+  const auto start = Clock::now();
+  LevelSurfaceReport found;
+  const Lattice lattice(low, high, level, cells);
+  found.cell = lattice.cell();
+  monitor.progress("looking for the level set", 0);
+  const std::vector<Place> blocks = near_blocks(field, lattice, level, monitor, found);
+  check_stop(monitor);
+  const auto values = distances_at(field, lattice, blocks, monitor, found);
+  check_stop(monitor);
+  monitor.progress("looking for the level set", 0.5);
+  TriangleSurface surface;
+  Marching marching(lattice, values, level, surface);
+  for (const Place& b : blocks)
+    for (int z = 0; z < block; ++z)
+      for (int y = 0; y < block; ++y)
+        for (int x = 0; x < block; ++x) marching.cube({b[0] + x, b[1] + y, b[2] + z});
+  if (surface.vertices.size() > 0x7fffffffULL)
+    throw Error(Fault::too_large, "the level set has more than 2^31 vertices: take fewer cubes");
+  found.cubes = marching.cut;
+  move_onto(field, level, 1e-12 * (high - low).norm(), lattice.cell(), monitor, surface, found);
+  monitor.progress("looking for the level set", 1);
+  found.seconds = seconds_since(start);
+  if (report) *report = found;
+  return surface;
+}
+
+} // namespace cowgpu
