@@ -22,7 +22,7 @@ constexpr int level_set_grid_degree = 1024;
 
 FlowPoints flow_vertices(const ManifoldSurface& surface, double time, Backend& backend, Monitor& monitor,
                          FlowReport& report) {
-  const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), flow_threads(backend));
+  const auto flow = backend.distance_flow(surface.vertices(), surface.faces());
   FlowOptions options;
   options.time = time;
   options.tolerance = sheet_tolerance;
@@ -51,7 +51,7 @@ void level_set(double time, ExpandSurfaceOptions options, const ManifoldSurface&
 
 SheetExpansion signed_sheets(const FlowChoice& choice, double time, const ExpandSurfaceOptions& options,
                              const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
-  const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), flow_threads(backend));
+  const auto flow = backend.distance_flow(surface.vertices(), surface.faces());
   return expand_sheets(surface.closed().mesh(), time, choice.refinements, sheet_tolerance, options, *flow, backend,
                        monitor);
 }
@@ -127,8 +127,8 @@ MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_
   }
   // Paths and positions of the finest vertices, its faces, and caps of these.
   const std::uint64_t times = std::uint64_t(1) << (2 * choice.refinements);
-  MemoryNeed need = backend.distance_field_memory(vertices, faces, vertices);
-  need.host += times * (vertices * 200 + faces * 120);
+  MemoryNeed need = backend.distance_flow_memory(vertices, faces, times * vertices);
+  need.host += times * (vertices * 100 + faces * 120);
   return need;
 }
 
@@ -155,10 +155,6 @@ double parse_flow_time(const std::string& text) {
     throw Error(Fault::bad_argument,
                 fmt::format("--time {}: it must be auto or a number above 0, in the mesh's length unit", text));
   return time;
-}
-
-unsigned flow_threads(const Backend& backend) {
-  return backend.facts().type == "cpu" ? backend.facts().threads : 0;
 }
 
 } // namespace cowgpu::cli

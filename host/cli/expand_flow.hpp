@@ -24,7 +24,4 @@ double flow_time(double given, const StarShapeTime& star);
 /// Reads --time: "auto" (0), or a finite number above 0. Throws Error(bad_argument).
 double parse_flow_time(const std::string& text);
 
-/// Threads that the flow runs on where this backend does the rest.
-unsigned flow_threads(const Backend& backend);
-
 } // namespace cowgpu::cli

@@ -1,7 +1,5 @@
-// The Vulkan path of the verb `closest`. The device lists the faces that may be the closest in single precision; among
-// them the host decides with the code of the CPU path, so that both give the same bits. That leaves fp64 out of the shader
-// and costs a tenth of the search: a query has two candidates, and its place on the face is found on the host anyway. So
-// are signs: a ray is needed for few queries.
+// The Vulkan path of the verb `closest`: faces from the device (host/gpu/closest_faces.hpp), places on them and signs from
+// the host, where a ray is needed for few queries. Both paths give the same bits.
 #pragma once
 
 #include "engine/gpu.hpp"
