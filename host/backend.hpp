@@ -3,6 +3,7 @@
 
 #include "host/coefficients.hpp"
 #include "host/distance_field.hpp"
+#include "host/flow.hpp"
 #include "host/image.hpp"
 #include "host/kernel_time.hpp"
 #include "host/monitor.hpp"
@@ -110,6 +111,13 @@ public:
   /// Upper bound of the memory a field and a call of closest() with so many queries allocate, its result included.
   virtual MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces,
                                            std::uint64_t queries) const = 0;
+
+  /// The verb `flow` off a closed triangle surface, which is copied. Throws what distance_field throws, and mesh_open. Every
+  /// path gives the same bits (host/gpu/flow.hpp).
+  virtual std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces) = 0;
+
+  /// Upper bound of the memory a flow of so many starts allocates, its result included, streamlines not.
+  virtual MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const = 0;
 
   /// The scene as a picture: smooth or flat shading, light from the upper left, the light of sky and ground where the
   /// surroundings let it through, edges with 16 samples a pixel. The same scene gives the same picture on any number of

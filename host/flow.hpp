@@ -7,6 +7,7 @@
 // from all nearest points (Lieutier, Computer-Aided Design 36 (2004) 1029). Lengths and times are in the mesh's unit.
 #pragma once
 
+#include "host/kernel_time.hpp"
 #include "host/monitor.hpp"
 #include "host/types.hpp"
 
@@ -59,9 +60,12 @@ struct FlowReport {
   double first_slide = std::numeric_limits<double>::infinity(), median_slide = 0; ///< times of reaching the axis
   Vec3 slide_low = Vec3::Zero(), slide_high = Vec3::Zero(); ///< box round the places where slides start
   double seconds = 0;
+  std::uint64_t passes = 0;         ///< of the device over all points on their way; 0 on the CPU path
+  std::uint64_t device_queries = 0; ///< of the queries those that the device answered
+  std::vector<KernelTime> kernels;  ///< empty on the CPU path
 };
 
-/// A surface to flow off. Reading is safe from several threads.
+/// A closed surface to flow off, prepared once for many flows. Not for several threads at once.
 class DistanceFlow {
 public:
   virtual ~DistanceFlow() = default;
@@ -74,11 +78,7 @@ public:
   /// Throws Error(bad_argument) for options out of range or starts that are not finite, interrupted. The same input gives
   /// the same bits on any number of threads.
   virtual FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
-                          Monitor& monitor, FlowReport* report = nullptr) const = 0;
+                          Monitor& monitor, FlowReport* report = nullptr) = 0;
 };
-
-/// The CPU path on `threads` threads (0: all): by events (host/cpu/flow_path.hpp). The surface must be closed.
-std::unique_ptr<DistanceFlow> make_cpu_flow(std::span<const Vec3> vertices, std::span<const Face> faces,
-                                            unsigned threads = 0);
 
 } // namespace cowgpu

@@ -181,7 +181,7 @@ TEST_CASE("signed sheets of the benchmark at 0.2 tend to a monopole of 1.092", "
   if (!cow) return skip_without_cow();
   const auto backend = make_cpu_backend();
   Monitor monitor;
-  const auto flow = make_cpu_flow(cow->vertices(), cow->faces());
+  const auto flow = make_cpu_backend()->distance_flow(cow->vertices(), cow->faces());
   ExpandSurfaceOptions options;
   options.lmax = 64;
   const SheetExpansion found = expand_sheets(cow->mesh(), 0.2, 2, 1e-6, options, *flow, *backend, monitor);

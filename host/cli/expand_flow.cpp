@@ -33,14 +33,14 @@ void level_set(double time, int grid_degree, ExpandSurfaceOptions options, const
   result.expansion = std::move(found.expansion);
   result.report = std::move(found.report);
   const auto start = Clock::now();
-  const FlowPoints ends = flow_vertices(surface, flow.time, flow_threads(backend), monitor, flow.points);
+  const FlowPoints ends = flow_vertices(surface, flow.time, backend, monitor, flow.points);
   result.map = direction_map(ends.positions, options.origin);
   result.map_seconds = seconds_since(start);
 }
 
 SheetExpansion signed_sheets(const FlowChoice& choice, double time, const ExpandSurfaceOptions& options,
                              const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
-  const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), flow_threads(backend));
+  const auto flow = backend.distance_flow(surface.vertices(), surface.faces());
   return expand_sheets(surface.closed().mesh(), time, choice.refinements, flow_tolerance, options, *flow, backend,
                        monitor);
 }
@@ -58,8 +58,8 @@ void sheets(const FlowChoice& choice, const ExpandSurfaceOptions& options, const
   result.report = std::move(found.report);
   const auto start = Clock::now();
   FlowReport of_vertices;
-  result.map = direction_map(flow_vertices(surface, flow.time, flow_threads(backend), monitor, of_vertices).positions,
-                             options.origin);
+  result.map =
+      direction_map(flow_vertices(surface, flow.time, backend, monitor, of_vertices).positions, options.origin);
   result.map_seconds = seconds_since(start);
 }
 
@@ -116,14 +116,14 @@ MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_
   }
   // Paths and positions of the finest vertices, its faces, and caps of these.
   const std::uint64_t times = std::uint64_t(1) << (2 * choice.refinements);
-  MemoryNeed need = backend.distance_field_memory(vertices, faces, vertices);
-  need.host += times * (vertices * 200 + faces * 120);
+  MemoryNeed need = backend.distance_flow_memory(vertices, faces, times * vertices);
+  need.host += times * (vertices * 100 + faces * 120);
   return need;
 }
 
-FlowPoints flow_vertices(const ManifoldSurface& surface, double time, unsigned threads, Monitor& monitor,
+FlowPoints flow_vertices(const ManifoldSurface& surface, double time, Backend& backend, Monitor& monitor,
                          FlowReport& report) {
-  const auto flow = make_cpu_flow(surface.vertices(), surface.faces(), threads);
+  const auto flow = backend.distance_flow(surface.vertices(), surface.faces());
   FlowOptions options;
   options.time = time;
   options.tolerance = flow_tolerance;
@@ -153,10 +153,6 @@ double parse_flow_time(const std::string& text) {
     throw Error(Fault::bad_argument,
                 fmt::format("--time {}: it must be auto or a number above 0, in the mesh's length unit", text));
   return time;
-}
-
-unsigned flow_threads(const Backend& backend) {
-  return backend.facts().type == "cpu" ? backend.facts().threads : 0;
 }
 
 } // namespace cowgpu::cli

@@ -17,8 +17,8 @@ MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_
 /// The star-shape time of a mesh about an origin, as precisely as every command takes it.
 StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor);
 
-/// The mesh's vertices along their normals for `time`, on so many threads (0: all).
-FlowPoints flow_vertices(const ManifoldSurface& surface, double time, unsigned threads, Monitor& monitor,
+/// The mesh's vertices along their normals for `time`.
+FlowPoints flow_vertices(const ManifoldSurface& surface, double time, Backend& backend, Monitor& monitor,
                          FlowReport& report);
 
 /// The time a command flows for: the given one, or for 0 that bound of the star-shape time which is surely enough.
@@ -27,8 +27,5 @@ double flow_time(double given, const StarShapeTime& star);
 
 /// Reads --time: "auto" (0), or a finite number above 0. Throws Error(bad_argument).
 double parse_flow_time(const std::string& text);
-
-/// Threads that the flow runs on where this backend does the rest.
-unsigned flow_threads(const Backend& backend);
 
 } // namespace cowgpu::cli

@@ -105,7 +105,7 @@ SphereMap make_flow_map(const Options& options, const Common& common, const Mani
   const double given = parse_flow_time(options.time);
   report.time_choice = given > 0 ? "given" : "auto";
   report.time = flow_time(given, report.star);
-  const FlowPoints ends = flow_vertices(surface, report.time, flow_threads(*backend), monitor, report.points);
+  const FlowPoints ends = flow_vertices(surface, report.time, *backend, monitor, report.points);
   return direction_map(ends.positions, report.origin);
 }
 

@@ -2,6 +2,7 @@
 #include "host/backend.hpp"
 
 #include "host/cpu/closest.hpp"
+#include "host/cpu/flow.hpp"
 #include "host/cpu/moments.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/cpu/peak.hpp"
@@ -63,6 +64,12 @@ public:
   }
   MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) const override {
     return {cpu::distance_field_bytes(vertices, faces, queries), 0};
+  }
+  std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces) override {
+    return cpu::distance_flow(vertices, faces, threads_);
+  }
+  MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const override {
+    return {cpu::distance_flow_bytes(vertices, faces, starts), 0};
   }
   Image render(const RenderScene& scene, Monitor& monitor) override { return cpu::render(scene, threads_, monitor); }
   double measured_peak() override { return cpu::peak(threads_); }

@@ -51,7 +51,7 @@ double FlowPath::small(double length, double distance) const {
 }
 
 FlowPath::FlowPath(const FlowSurface& surface, double time, double tolerance, FlowTrace* trace)
-    : surface_(surface), time_(time), tolerance_(tolerance), scale_(surface.diagonal()),
+    : surface_(&surface), time_(time), tolerance_(tolerance), scale_(surface.diagonal()),
       // A triangle that is nearer only during a step is not seen: closer looks at tighter tolerances.
       longest_(std::clamp(0.5 * std::pow(tolerance / 1e-6, 1.0 / 6), 0.05, 0.5)), trace_(trace) {}
 
@@ -61,11 +61,6 @@ void FlowPath::record() {
   trace_->times.push_back(t_);
 }
 
-std::uint32_t FlowPath::nearest(const Vec3& x, std::uint32_t warm) {
-  ++end_.queries;
-  return surface_.nearest(x, warm);
-}
-
 FlowPath::View FlowPath::look(const Vec3& x) const {
   View view;
   view.count = contacts_.count;
@@ -73,16 +68,16 @@ FlowPath::View FlowPath::look(const Vec3& x) const {
   for (int c = 0; c < contacts_.count; ++c) {
     const auto i = std::size_t(c);
     const Contact& contact = contacts_.list[i];
-    Foot best = surface_.foot(contact.faces[0], x);
+    Foot best = surface_->foot(contact.faces[0], x);
     view.faces[i] = contact.faces[0];
     for (int k = 1; k < contact.count; ++k) {
-      const Foot foot = surface_.foot(contact.faces[std::size_t(k)], x);
+      const Foot foot = surface_->foot(contact.faces[std::size_t(k)], x);
       if (foot.distance < best.distance) best = foot, view.faces[i] = contact.faces[std::size_t(k)];
     }
     view.points[i] = best.point;
     view.distances[i] = best.distance;
     view.inside[i] = best.inside;
-    view.normals[i] = best.distance > 0 ? Vec3((x - best.point) / best.distance) : surface_.normal(view.faces[i]);
+    view.normals[i] = best.distance > 0 ? Vec3((x - best.point) / best.distance) : surface_->normal(view.faces[i]);
     view.distance = std::min(view.distance, best.distance);
   }
   if (view.count == 1) {
@@ -129,7 +124,7 @@ void FlowPath::tidy(View& view) {
     }
     for (int k = 0; k < contact.count; ++k) {
       const std::uint32_t face = contact.faces[std::size_t(k)];
-      if (surface_.foot(face, x_).distance <= view.distances[i] + (far - view.distance) / 10) own.add(face);
+      if (surface_->foot(face, x_).distance <= view.distances[i] + (far - view.distance) / 10) own.add(face);
     }
   }
   if (kept.count == 0) return;
@@ -137,17 +132,18 @@ void FlowPath::tidy(View& view) {
   if (changed) view = look(x_);
 }
 
-void FlowPath::restart() {
-  warm_ = nearest(x_, warm_);
+void FlowPath::restart(std::uint32_t face) {
+  warm_ = face;
   contacts_.count = 0;
   contacts_.add(warm_);
   idle_ = 0;
   step_ = 0;
+  go_on();
 }
 
 void FlowPath::take_in(std::uint32_t face, const Vec3& place) {
   const View view = look(place);
-  const Vec3 point = surface_.foot(face, place).point;
+  const Vec3 point = surface_->foot(face, place).point;
   ++end_.events;
   for (int c = 0; c < view.count; ++c)
     if ((view.points[std::size_t(c)] - point).norm() < same_point * view.distance) {
@@ -157,40 +153,45 @@ void FlowPath::take_in(std::uint32_t face, const Vec3& place) {
   contacts_.add(face);
 }
 
-void FlowPath::ray(const View& view) {
-  ray(view.points[0], view.normals[0], view.distance, view.faces[0]);
+void FlowPath::begin_ray(const Vec3& foot, const Vec3& normal, double distance, std::uint32_t face) {
+  const double limit = distance + (time_ - t_);
+  ball_ = {foot, normal, distance, limit, limit, face, face, foot, 0};
+  ask(Phase::ray, foot + limit * normal, warm_);
 }
 
-void FlowPath::ray(const Vec3& foot, const Vec3& normal, double distance, std::uint32_t face) {
-  Vec3 touched = foot;
-  std::uint32_t warm = warm_, hit = face;
-  const double limit = distance + (time_ - t_);
-  const double radius = std::max(distance, reference::shrinking_ball<double>(
-                                               foot, normal, limit, [&](double r) { return small(rounding, r); },
-                                               [&](const Vec3& centre) {
-                                                 hit = warm; // the last query finds nothing nearer than the one before
-                                                 warm = nearest(centre, warm);
-                                                 return surface_.foot(warm, centre).point;
-                                               },
-                                               &touched));
-  x_ = foot + radius * normal;
-  t_ += radius - distance;
-  record();
-  if (radius >= limit) {
-    t_ = time_;
-    return;
+void FlowPath::shrink(std::uint32_t face) {
+  const Vec3 point = surface_->foot(face, query_).point;
+  if (!reference::shrink<double>(ball_.foot, ball_.normal, point, small(rounding, ball_.radius), ball_.radius) ||
+      ++ball_.rounds == 100) {
+    ball_.radius = std::max(ball_.distance, ball_.radius);
+    return end_ray();
   }
+  ball_.touched = point;
+  ball_.hit = face;
+  ask(Phase::ray, ball_.foot + ball_.radius * ball_.normal, face);
+}
+
+void FlowPath::end_ray() {
+  x_ = ball_.foot + ball_.radius * ball_.normal;
+  t_ += ball_.radius - ball_.distance;
+  record();
+  if (ball_.radius >= ball_.limit) {
+    t_ = time_;
+    return go_on();
+  }
+  const bool moved = ball_.radius > ball_.distance + rounding * scale_;
   ++end_.events;
   contacts_.count = 0;
-  if ((touched - foot).norm() < same_point * radius && radius > distance + rounding * scale_) {
-    contacts_.add(hit);
+  if (moved && (ball_.touched - ball_.foot).norm() < same_point * ball_.radius) {
+    contacts_.add(ball_.hit);
   } else {
-    contacts_.add(face);
-    if (hit != face) contacts_.add(hit);
+    contacts_.add(ball_.face);
+    if (ball_.hit != ball_.face) contacts_.add(ball_.hit);
   }
-  warm_ = face;
+  warm_ = ball_.face;
   step_ = 0;
-  idle_ = radius > distance + rounding * scale_ ? 0 : idle_ + 1;
+  idle_ = moved ? 0 : idle_ + 1;
+  go_on();
 }
 
 Vec3 FlowPath::slide_step(const Vec3& from, const Vec3& velocity, double step, double* error) const {
@@ -230,7 +231,7 @@ bool FlowPath::straight(const View& from, const Vec3& to) const {
     const auto i = std::size_t(c);
     if (!from.inside[i]) return false;
     if (contacts_.list[i].count > 1) return false;
-    if (!surface_.foot(from.faces[i], to).inside) return false;
+    if (!surface_->foot(from.faces[i], to).inside) return false;
   }
   return true;
 }
@@ -244,7 +245,7 @@ Vec3 FlowPath::advance(const View& from, double step, bool straight) const {
 
 // The step after which `face` is as near as the contacts, by Illinois' rule; `place` then.
 double FlowPath::to_tie(const View& from, std::uint32_t face, double step, double gap, bool straight, Vec3& place) {
-  const auto gap_at = [&](const Vec3& at) { return surface_.foot(face, at).distance - look(at).active_distance(); };
+  const auto gap_at = [&](const Vec3& at) { return surface_->foot(face, at).distance - look(at).active_distance(); };
   double low = 0, high = step, low_gap = gap_at(x_), high_gap = gap;
   if (low_gap <= 10 * small(rounding, from.distance)) {
     place = x_;
@@ -276,7 +277,7 @@ double FlowPath::to_tie(const View& from, std::uint32_t face, double step, doubl
   return high;
 }
 
-void FlowPath::slide(const View& view) {
+void FlowPath::begin_slide(const View& view) {
   const double most = std::min(time_ - t_, longest_ * view.distance / view.velocity.norm());
   double step = most, next = 0;
   ++end_.steps;
@@ -294,28 +295,36 @@ void FlowPath::slide(const View& view) {
     next = step * std::min(4.0, 0.9 * std::pow(allowed / (error + 1e-30), 0.2));
     balance(place);
   }
-  std::uint32_t nearer = no_face;
-  for (int tries = 0; tries < 12; ++tries) {
-    const double distance = look(place).distance;
-    const std::uint32_t face = nearest(place, warm_);
-    const double gap = surface_.foot(face, place).distance - distance;
-    if (gap >= -small(tie, distance)) break;
-    nearer = face;
-    step = to_tie(view, face, step, gap, line, place);
-    if (step == 0) break;
-  }
-  if (nearer != no_face) take_in(nearer, place);
-  x_ = place;
+  slide_ = {view, place, step, next, line, no_face, 0};
+  ask(Phase::slide, place, warm_);
+}
+
+void FlowPath::check_slide(std::uint32_t face) {
+  Vec3& place = slide_.place;
+  const double distance = look(place).distance, gap = surface_->foot(face, place).distance - distance;
+  if (gap >= -small(tie, distance)) return end_slide();
+  slide_.nearer = face;
+  slide_.step = to_tie(slide_.from, face, slide_.step, gap, slide_.straight, place);
+  if (slide_.step == 0 || ++slide_.tries == 12) return end_slide();
+  ask(Phase::slide, place, warm_);
+}
+
+void FlowPath::end_slide() {
+  const double step = slide_.step, distance = slide_.from.distance;
+  const bool met = slide_.nearer != no_face;
+  if (met) take_in(slide_.nearer, slide_.place);
+  x_ = slide_.place;
   t_ += step;
   record();
-  idle_ = step < apart * view.distance ? idle_ + 1 : 0;
-  step_ = nearer != no_face ? std::max(next / 4, same_point * view.distance) : next;
+  idle_ = step < apart * distance ? idle_ + 1 : 0;
+  step_ = met ? std::max(slide_.next / 4, same_point * distance) : slide_.next;
   warm_ = contacts_.list[0].faces[0];
+  go_on();
 }
 
 bool FlowPath::come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32_t& face) const {
-  std::vector<Foot> feet(surface_.faces());
-  for (std::uint32_t f = 0; f < surface_.faces(); ++f) feet[f] = surface_.foot(f, place);
+  std::vector<Foot> feet(surface_->faces());
+  for (std::uint32_t f = 0; f < surface_->faces(); ++f) feet[f] = surface_->foot(f, place);
   std::vector<std::uint32_t> order(feet.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -323,8 +332,8 @@ bool FlowPath::come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32
   });
   for (const std::uint32_t f : order) {
     const Vec3 way = feet[f].point - place;
-    const Vec3 out = feet[f].distance > rounding * scale_ ? Vec3(way / feet[f].distance) : surface_.normal(f);
-    if (surface_.winding_number(feet[f].point + off_surface * scale_ * out) != 0) continue;
+    const Vec3 out = feet[f].distance > rounding * scale_ ? Vec3(way / feet[f].distance) : surface_->normal(f);
+    if (surface_->winding_number(feet[f].point + off_surface * scale_ * out) != 0) continue;
     foot = feet[f].point;
     normal = out;
     face = f;
@@ -333,94 +342,115 @@ bool FlowPath::come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32
   return false;
 }
 
-void FlowPath::leave(const Vec3& start, const Vec3& given, std::uint32_t warm) {
-  Vec3 foot = start, normal = given;
-  x_ = start;
-  warm_ = nearest(start, warm);
-  const Foot near = surface_.foot(warm_, start);
+void FlowPath::leave() {
+  const Vec3 place = x_;
+  Vec3 foot = place, normal = ball_.normal;
+  const Foot near = surface_->foot(warm_, place);
   const bool on_surface = normal.squaredNorm() > 0 || near.distance <= rounding * scale_;
-  if (on_surface && normal.squaredNorm() == 0) normal = surface_.normal(warm_);
-  const Vec3 off = start + off_surface * scale_ * normal;
-  if (surface_.winding_number(on_surface ? off : start) != 0) {
+  if (on_surface && normal.squaredNorm() == 0) normal = surface_->normal(warm_);
+  const Vec3 off = place + off_surface * scale_ * normal;
+  if (surface_->winding_number(on_surface ? off : place) != 0) {
     // Inside, the gradient of the negative distance leads straight to the nearest way out. Sheets of the surface inside
     // the body, where it overlaps itself, are none.
     end_.flags |= flow_inside;
     std::uint32_t face = 0;
-    if (!come_out(on_surface ? off : start, foot, normal, face)) {
+    if (!come_out(on_surface ? off : place, foot, normal, face)) {
       end_.flags |= flow_unfinished;
       t_ = time_;
       inside_ = true;
-      return;
+      return go_on();
     }
-    const double way = (foot - start).norm();
+    const double way = (foot - place).norm();
     warm_ = face;
     if (way >= time_) {
-      x_ = start + time_ * normal;
+      x_ = place + time_ * normal;
       t_ = time_;
       inside_ = true;
-      return;
+      return go_on();
     }
     t_ = way;
     x_ = foot;
     record();
   } else if (!on_surface) {
     contacts_.add(warm_);
-    return;
+    return go_on();
   }
   // Largest ball that touches here: the flow leaves along the normal if there is one.
   const double least = std::min(10 * off_surface * scale_, time_ - t_);
-  const Vec3 centre = foot + least * normal;
-  if (surface_.foot(nearest(centre, warm_), centre).distance >= least - small(rounding, least))
-    return ray(foot, normal, 0, warm_);
+  ball_ = {foot, normal, 0, least, 0, warm_, 0, foot, 0};
+  ask(Phase::lift, foot + least * normal, warm_);
+}
+
+void FlowPath::lift(std::uint32_t face) {
+  const Vec3 foot = ball_.foot, normal = ball_.normal;
+  const double least = ball_.radius;
+  if (surface_->foot(face, query_).distance >= least - small(rounding, least)) return begin_ray(foot, normal, 0, warm_);
   end_.flags |= flow_notch;
   const double away = std::min(off_surface * scale_, time_ - t_);
   x_ = foot + away * normal;
   t_ += away;
   record();
-  restart();
+  ask(Phase::restart, x_, warm_);
 }
 
-FlowEnd FlowPath::run(const Vec3& start, const Vec3& normal, std::uint32_t warm) {
+void FlowPath::ask(Phase phase, const Vec3& place, std::uint32_t warm) {
+  phase_ = phase;
+  query_ = place;
+  query_warm_ = warm;
+  ++end_.queries;
+}
+
+void FlowPath::start(const Vec3& place, const Vec3& normal) {
   end_ = {};
   contacts_.count = 0;
   t_ = step_ = 0;
-  idle_ = 0;
+  idle_ = rounds_ = 0;
   inside_ = false;
   if (trace_) *trace_ = {};
-  x_ = start;
+  x_ = place;
+  ball_.normal = normal;
   record();
-  if (time_ > 0)
-    leave(start, normal, warm);
-  else
-    warm_ = nearest(start, warm);
-  for (int round = 0; t_ < time_ * (1 - 1e-14); ++round) {
-    if (round >= most_rounds / longest_) {
-      end_.flags |= flow_unfinished;
-      break;
-    }
-    if (idle_ > 6) restart();
-    View view = look(x_);
-    tidy(view);
-    if (view.velocity.squaredNorm() < 1e-16) {
-      end_.flags |= flow_stationary;
-      break;
-    }
-    if (view.count == 1) {
-      ray(view);
-      continue;
-    }
-    if (!(end_.flags & flow_slid)) {
-      end_.flags |= flow_slid;
-      end_.slide_time = t_;
-      end_.slide_place = x_;
-    }
-    slide(view);
+  ask(Phase::start, place, no_face);
+}
+
+void FlowPath::answer(std::uint32_t face) {
+  switch (phase_) {
+  case Phase::start: warm_ = face; return time_ > 0 ? leave() : go_on();
+  case Phase::lift: return lift(face);
+  case Phase::restart: return restart(face);
+  case Phase::ray: return shrink(face);
+  case Phase::slide: return check_slide(face);
+  case Phase::last:
+    end_.position = x_;
+    end_.face = face;
+    end_.distance = surface_->foot(face, x_).distance;
+    if (inside_) end_.distance = -end_.distance;
+    phase_ = Phase::done;
+    return;
+  case Phase::done: return;
   }
-  end_.position = x_;
-  end_.face = nearest(x_, warm_);
-  end_.distance = surface_.foot(end_.face, x_).distance;
-  if (inside_) end_.distance = -end_.distance;
-  return end_;
+}
+
+void FlowPath::go_on() {
+  if (t_ >= time_ * (1 - 1e-14)) return ask(Phase::last, x_, warm_);
+  if (rounds_++ >= most_rounds / longest_) {
+    end_.flags |= flow_unfinished;
+    return ask(Phase::last, x_, warm_);
+  }
+  if (idle_ > 6) return ask(Phase::restart, x_, warm_);
+  View view = look(x_);
+  tidy(view);
+  if (view.velocity.squaredNorm() < 1e-16) {
+    end_.flags |= flow_stationary;
+    return ask(Phase::last, x_, warm_);
+  }
+  if (view.count == 1) return begin_ray(view.points[0], view.normals[0], view.distance, view.faces[0]);
+  if (!(end_.flags & flow_slid)) {
+    end_.flags |= flow_slid;
+    end_.slide_time = t_;
+    end_.slide_place = x_;
+  }
+  begin_slide(view);
 }
 
 } // namespace cowgpu::cpu

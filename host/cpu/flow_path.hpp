@@ -10,6 +10,9 @@
 //   4. A nearer triangle at the end of a step: the time of the tie is bracketed with the contacts unchanged, the step
 //      shortened to it, and then the triangle is taken in: into a contact that has its nearest point there already (a
 //      hand-over), else as a new one.
+//
+// A path stops wherever it needs the nearest triangle of a place, and goes on when it is told: whoever runs it answers one
+// path after another or, in wavefronts, one query of each of many at once. The answers decide the bits, not who gives them.
 #pragma once
 
 #include "host/cpu/flow_surface.hpp"
@@ -40,11 +43,29 @@ class FlowPath {
 public:
   FlowPath(const FlowSurface& surface, double time, double tolerance, FlowTrace* trace = nullptr);
 
-  /// From a place, with `normal` zero, or from a surface point along its normal. `warm`: a face near it, or none.
-  FlowEnd run(const Vec3& start, const Vec3& normal, std::uint32_t warm);
+  /// From a place, with `normal` zero, or from a surface point along its normal.
+  void start(const Vec3& place, const Vec3& normal);
+
+  bool done() const { return phase_ == Phase::done; }
+
+  /// Until it is done: the place whose nearest face (FlowSurface::nearest) it waits for, and a face that may be near it or
+  /// no_face.
+  const Vec3& query() const { return query_; }
+  std::uint32_t warm() const { return query_warm_; }
+
+  /// Goes on to the next query or to the end.
+  void answer(std::uint32_t face);
+
+  /// It is done, however far it came.
+  void stop() { phase_ = Phase::done; }
+
+  const FlowEnd& end() const { return end_; }
 
 private:
   static constexpr int most_contacts = 8, most_faces = 6;
+
+  /// What the query is for.
+  enum class Phase { start, lift, restart, ray, slide, last, done };
 
   struct Contact {
     std::array<std::uint32_t, most_faces> faces{};
@@ -68,27 +89,52 @@ private:
     bool active(int i) const { return weights[std::size_t(i)] > 1e-9; }
     double active_distance() const;
   };
+  /// A ball that shrinks until it is empty.
+  struct Ball {
+    Vec3 foot, normal;
+    double distance = 0;    ///< of x from the foot
+    double radius = 0;      ///< of the ball; not less than distance in the end
+    double limit = 0;       ///< radius at the end of time
+    std::uint32_t face = 0; ///< of the foot
+    std::uint32_t hit = 0;  ///< nearest to the centre of the ball before
+    Vec3 touched;           ///< its point
+    int rounds = 0;
+  };
+  /// A step that has to be checked.
+  struct Step {
+    View from;
+    Vec3 place;
+    double step = 0, next = 0; ///< next: what its error allows for the one after it
+    bool straight = false;
+    std::uint32_t nearer = 0; ///< a face met on the way, or no_face
+    int tries = 0;
+  };
 
   double small(double length, double distance) const;
   View look(const Vec3& x) const;
-  std::uint32_t nearest(const Vec3& x, std::uint32_t warm);
   void tidy(View& view);
-  void ray(const View& view);
-  void ray(const Vec3& foot, const Vec3& normal, double distance, std::uint32_t face);
-  void slide(const View& view);
-  void restart();
+  void ask(Phase phase, const Vec3& place, std::uint32_t warm);
+  void go_on();
+  void leave();
+  void lift(std::uint32_t face);
+  void begin_ray(const Vec3& foot, const Vec3& normal, double distance, std::uint32_t face);
+  void shrink(std::uint32_t face);
+  void end_ray();
+  void begin_slide(const View& view);
+  void check_slide(std::uint32_t face);
+  void end_slide();
+  void restart(std::uint32_t face);
   void take_in(std::uint32_t face, const Vec3& place);
   Vec3 advance(const View& from, double step, bool straight) const;
   Vec3 slide_step(const Vec3& from, const Vec3& velocity, double step, double* error) const;
   void balance(Vec3& x) const;
   bool straight(const View& from, const Vec3& to) const;
   double to_tie(const View& from, std::uint32_t face, double step, double gap, bool straight, Vec3& place);
-  void leave(const Vec3& start, const Vec3& normal, std::uint32_t warm);
   bool come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32_t& face) const;
   void record();
 
-  const FlowSurface& surface_;
-  const double time_, tolerance_, scale_, longest_;
+  const FlowSurface* surface_;
+  double time_, tolerance_, scale_, longest_;
   FlowTrace* trace_;
   FlowEnd end_;
   Contacts contacts_;
@@ -97,6 +143,12 @@ private:
   std::uint32_t warm_ = 0;
   bool inside_ = false; ///< it ended before it came out
   int idle_ = 0;        ///< steps in turn that came nowhere
+  int rounds_ = 0;
+  Phase phase_ = Phase::done;
+  Vec3 query_;
+  std::uint32_t query_warm_ = 0;
+  Ball ball_;
+  Step slide_;
 };
 
 } // namespace cowgpu::cpu

@@ -23,6 +23,7 @@ public:
   /// Throws what check_distance_surface throws, and Error(mesh_open) for a surface that is not closed.
   FlowSurface(std::span<const Vec3> vertices, std::span<const Face> faces);
 
+  const plan::ClosestTree& tree() const { return tree_; }
   std::size_t faces() const { return normals_.size(); }
   double diagonal() const { return diagonal_; }                           ///< of the bounding box
   const Vec3& normal(std::uint32_t face) const { return normals_[face]; } ///< outwards; zero for a face without area

@@ -86,7 +86,7 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
 }
 
 SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, double tolerance,
-                             const ExpandSurfaceOptions& options, const DistanceFlow& flow, Backend& backend,
+                             const ExpandSurfaceOptions& options, DistanceFlow& flow, Backend& backend,
                              Monitor& monitor) {
   if (refinements < 1 || refinements > 5)
     throw Error(Fault::bad_argument,

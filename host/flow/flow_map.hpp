@@ -46,7 +46,7 @@ struct SheetExpansion {
 /// The sutures make the error fall by about half with each refinement, so a is extrapolated as 2 a_k - a_(k-1). The flow
 /// goes by events at `tolerance`. Throws Error(bad_argument) for refinements outside 1 ... 5 or time <= 0.
 SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, double tolerance,
-                             const ExpandSurfaceOptions& options, const DistanceFlow& flow, Backend& backend,
+                             const ExpandSurfaceOptions& options, DistanceFlow& flow, Backend& backend,
                              Monitor& monitor);
 
 } // namespace cowgpu

@@ -7,6 +7,7 @@
 #include "host/gpu/closest.hpp"
 #include "host/gpu/environment.hpp"
 #include "host/gpu/errors.hpp"
+#include "host/gpu/flow.hpp"
 #include "host/gpu/moments.hpp"
 #include "host/gpu/sample.hpp"
 #include "host/gpu/sphere_transform.hpp"
@@ -70,6 +71,14 @@ public:
 
   MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) const override {
     return gpu::distance_field_memory(vertices, faces, queries);
+  }
+
+  std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces) override {
+    return gpu::translated([&] { return gpu::distance_flow(gpu_, iteration_budget_, vertices, faces); });
+  }
+
+  MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const override {
+    return gpu::distance_flow_memory(vertices, faces, starts);
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {

@@ -1,8 +1,5 @@
-// The Vulkan path of the verb `closest`. The device lists the faces that may be the closest in single precision; among
-// them the host decides with the code of the CPU path, so that both give the same bits. A query has about one candidate:
-// deciding costs 7 % of the search on lavapipe and leaves fp64 out of the shader, and places on the faces are found on the
-// host anyway. So are signs, as few queries need a ray. Searches the device gives up (too many steps or candidates), and
-// queries too far away for single precision, are the host's as well.
+// The Vulkan path of the verb `closest`: faces from the device (host/gpu/closest_faces.hpp), places on them and signs from
+// the host, where a ray is needed for few queries. Both paths give the same bits.
 #pragma once
 
 #include "engine/gpu.hpp"

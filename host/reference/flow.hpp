@@ -94,25 +94,19 @@ Vector<T> closest_on_mesh(std::span<const Eigen::Vector3d> vertices,
   return best;
 }
 
-/// Radius of the largest ball that touches the plane through q with normal n there and has no other surface point inside,
-/// at most `limit`: R = |p - q|^2 / (2 (p - q) . n) for a point p inside (Ma, Bae and Choi, The Visual Computer 28 (2012)
-/// 7, the shrinking ball). `closest(c)` is the closest surface point to c; `slack(R)` how deep a point of a ball of radius R
-/// may lie and still count as on it; `touched`, if the ball touches, that point.
-template <class T, class Closest, class Slack>
-T shrinking_ball(const Vector<T>& q, const Vector<T>& n, T limit, const Slack& slack, const Closest& closest,
-                 Vector<T>* touched = nullptr) {
-  T radius = limit;
-  for (int step = 0; step < 100; ++step) {
-    const Vector<T> centre = q + radius * n, p = closest(centre), pq = p - q;
-    if ((p - centre).norm() >= radius - slack(radius)) break;
-    const T height = pq.dot(n);
-    if (!(height > 0)) break;
-    const T smaller = pq.squaredNorm() / (2 * height);
-    if (!(smaller < radius)) break;
-    radius = smaller;
-    if (touched) *touched = p;
-  }
-  return radius;
+/// One round of the shrinking ball (Ma, Bae and Choi, The Visual Computer 28 (2012) 7). A ball of `radius` touches the plane
+/// through q with normal n there; p is the closest surface point to its centre. True if p lies inside by more than `slack`:
+/// `radius` is then that of the smaller ball through p, |p - q|^2 / (2 (p - q) . n).
+template <class T>
+bool shrink(const Vector<T>& q, const Vector<T>& n, const Vector<T>& p, T slack, T& radius) {
+  const Vector<T> centre = q + radius * n, pq = p - q;
+  if ((p - centre).norm() >= radius - slack) return false;
+  const T height = pq.dot(n);
+  if (!(height > 0)) return false;
+  const T smaller = pq.squaredNorm() / (2 * height);
+  if (!(smaller < radius)) return false;
+  radius = smaller;
+  return true;
 }
 
 /// Steps of the classical fourth-order method for dx/dt = direction(x), from x over `time` in `steps` equal steps. The first

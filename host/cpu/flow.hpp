@@ -1,0 +1,19 @@
+// The CPU path of the verb `flow` (host/flow.hpp): each thread takes one point after another from its start to its end.
+#pragma once
+
+#include "host/flow.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace cowgpu::cpu {
+
+/// On `threads` threads (0: all). Throws what FlowSurface throws.
+std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces,
+                                            unsigned threads);
+
+/// Bytes of a flow and of one call of so many starts, their result included, streamlines not.
+std::uint64_t distance_flow_bytes(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts);
+
+} // namespace cowgpu::cpu
