@@ -38,6 +38,7 @@ void add_spectrum(CLI::App& app, Common& common);
 void add_map(CLI::App& app, Common& common);
 void add_reconstruct(CLI::App& app, Common& common);
 void add_distance(CLI::App& app, Common& common);
+void add_streamlines(CLI::App& app, Common& common);
 
 /// Adds `roundtrip` to the command `transform`.
 void add_roundtrip(CLI::App& transform, Common& common);
