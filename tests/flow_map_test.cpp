@@ -69,6 +69,7 @@ TEST_CASE("over a ball the level set's map is the identity up to its sagitta", "
     const RawMesh mesh = icosphere(level, 2);
     ExpandSurfaceOptions options;
     options.lmax = 16;
+    options.grid_degree = 256;
     const LevelSetExpansion found = expand_level_set(mesh, 0.5, options, *backend, monitor);
     CHECK(found.time == 0.5);
     CHECK(found.star.lower == 0);
@@ -281,6 +282,7 @@ TEST_CASE("means over the cells at jumps bring the grid's error down, and leave 
   const double averaged = largest(of(two, options.origin, 128, 4, jumps), truth);
   CAPTURE(plain, averaged);
   CHECK(averaged < plain / 3);
-  of(one, {0, 0, 0}, 128, 4, jumps);
-  CHECK(jumps.cells == 0);
+  const double moved = largest(of(one, {0, 0, 0}, 128, 4, jumps), of(one, {0, 0, 0}, 128, 1, jumps));
+  CAPTURE(moved);
+  CHECK(moved < averaged / 4);
 }

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -210,7 +211,8 @@ TEST_CASE("streamlines of a ball are radial to the order of its triangles", "[st
   }
 }
 
-TEST_CASE("streamlines of the benchmark's mirror plane stay in it", "[streamlines][benchmark]") {
+TEST_CASE("off the benchmark's 116 vertices in its mirror plane distances never fall, and most lines keep to the plane",
+          "[streamlines][benchmark]") {
   const auto cow = benchmark_cow();
   if (!cow) return skip_without_cow();
   const RawMesh& mesh = cow->mesh();
@@ -222,6 +224,9 @@ TEST_CASE("streamlines of the benchmark's mirror plane stay in it", "[streamline
   for (std::size_t i = 0; i < found.directions.size(); ++i)
     for (std::size_t k = found.lines.first[i] + 1; k < found.lines.first[i + 1]; ++k)
       CHECK(found.distances[k] >= found.distances[k - 1] - 1e-9);
+  const auto kept = std::count_if(found.directions.begin(), found.directions.end(),
+                                  [](const Vec3& direction) { return std::abs(direction.z()) < 0.05; });
+  CHECK(kept >= 90);
   const auto loops = cut_by_plane(mesh.vertices, mesh.faces, plane);
   CHECK(whole_area(loops, plane) > 0);
   CHECK(starts_along(loops, 400, mesh.vertices, mesh.faces).places.size() == 400);
@@ -243,7 +248,7 @@ TEST_CASE("the command writes lines as CSV and JSON, and says why it cannot", "[
     if (!line.starts_with('#')) rows.push_back(line);
   REQUIRE(rows.size() == 1 + 16);
   CHECK(rows[0] == "line,time,x,y,z,u,v,height,distance,direction_u,direction_v,flags");
-  CHECK_THAT(table.out, Contains("# axis_u 0,1,0\n# axis_v 0,0,1\n") && Contains("# mesh builtin:box:2,2,2\n"));
+  CHECK_THAT(table.out, Contains("# axis_u 0,1,0\n# axis_v 0,0,1\n") && Contains("# mesh builtin:box:2,2,2"));
   const ProgramRun run = call({"builtin:box:2,2,2", "--spacing", "0.5", "--plane", "xz", "-o", folder / "lines.json"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);

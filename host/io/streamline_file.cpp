@@ -28,7 +28,7 @@ ordered_json vector_json(const Vec3& x) {
 }
 
 std::string vector_text(const Vec3& x) {
-  return fmt::format("{},{},{}", x.x(), x.y(), x.z());
+  return fmt::format("{},{},{}", x.x() + 0., x.y() + 0., x.z() + 0.); // no -0
 }
 
 } // namespace
@@ -48,7 +48,7 @@ void write_streamlines_csv(const StreamlineTable& table, const std::function<voi
       fmt::format_to(std::back_inserter(text), "{},", i);
       for (const double value : {lines.path_times[k], x.x(), x.y(), x.z(), u.dot(x), v.dot(x), table.plane.height(x),
                                  table.found.distances[k], u.dot(direction), v.dot(direction)}) {
-        append_number(text, value);
+        append_number(text, value + 0.); // no -0
         text += ',';
       }
       fmt::format_to(std::back_inserter(text), "{}\n", lines.flags[i]);
