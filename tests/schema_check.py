@@ -210,4 +210,13 @@ with tempfile.TemporaryDirectory() as folder:
     assert report["points"] == 125 and report["inside"] == 27 and report["outside"] == 98
 report["grid"]["counts"] = [1, 2]
 refuses(distance, report, "a grid of two axes")
-print("33 documents and 5 files passed")
+streamlines = load_schema("streamlines")
+for arguments in (["--count", "7"], ["--plane", "1,1,0,0.1", "--spacing", "0.5"], ["--plane", "xy", "--vertices", "1"]):
+    drawn = output_of("streamlines", "builtin:box:1,1,1", *arguments, "--device", "cpu", "--json")
+    jsonschema.validate(drawn, streamlines)
+    assert drawn["counts"]["lines"] == len(drawn["lines"]) and drawn["counts"]["slid"] == 0
+    assert all(("loop" in line) is ("--vertices" not in arguments) for line in drawn["lines"])
+assert len(drawn["lines"]) == 8
+drawn["lines"][0]["path"][0] = [0, 1, 2]
+refuses(streamlines, drawn, "a corner without a distance")
+print("36 documents and 5 files passed")

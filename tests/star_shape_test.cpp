@@ -1,6 +1,7 @@
 #include "host/flow/star_shape.hpp"
 
 #include "host/error.hpp"
+#include "host/flow/flow_map.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>
@@ -21,7 +22,7 @@ StarShapeTime find(const RawMesh& mesh, const Vec3& origin, double tolerance) {
 } // namespace
 
 TEST_CASE("a body that is star-shaped as it is needs no time", "[star_shape]") {
-  for (const RawMesh& mesh : {icosphere(3), box({1, 2, 3}, {-0.5, -1, -1})}) {
+  for (const RawMesh& mesh : {test::icosphere(3), box({1, 2, 3}, {-0.5, -1, -1})}) {
     const StarShapeTime time = find(mesh, Vec3::Zero(), 1e-6);
     CHECK(time.lower == 0);
     CHECK(time.upper == 1e-6);
@@ -51,6 +52,29 @@ TEST_CASE("across a gap between two boxes the time is sqrt 2 by the closed form"
   CHECK(time.upper - time.lower < 1.1e-3);
   CHECK(time.normal.x() == Approx(std::sqrt(0.5)).margin(1e-3));
   CHECK((time.point + time.lower * time.normal - time.place).norm() < 1e-12);
+}
+
+TEST_CASE("where the supremum is met all along an edge the search is given up with bounds that hold", "[star_shape]") {
+  const RawMesh mesh = together(box({2, 2, 2}, {1, -1, -1}), box({2, 2, 2}, {-3, -1, -1}));
+  const StarShapeTime time = find(mesh, {2, 0, 0}, 1e-8);
+  CAPTURE(time.lower, time.upper, time.regions);
+  CHECK(time.given_up);
+  CHECK(time.lower <= std::sqrt(2) + 1e-12);
+  CHECK(time.upper >= std::sqrt(2));
+  CHECK(time.upper - time.lower > 1e-8);
+  CHECK(time.upper - time.lower < 1e-3);
+  // An expansion takes the upper bound, and says so.
+  const auto backend = make_cpu_backend();
+  Monitor monitor;
+  ExpandSurfaceOptions options;
+  options.lmax = 2;
+  options.grid_degree = 32;
+  options.origin = {2, 0, 0};
+  const LevelSetExpansion found = expand_level_set(mesh, 0, options, *backend, monitor);
+  CHECK(found.time >= std::sqrt(2));
+  CHECK(found.time < std::sqrt(2) + 1e-2);
+  CHECK(found.star.given_up == !found.notes.empty());
+  CHECK(found.level_set.least_slope > 0);
 }
 
 TEST_CASE("star-shape times without faces, with an origin not finite or too fine a tolerance are refused",

@@ -40,6 +40,7 @@ void add_map(CLI::App& app, Common& common);
 void add_reconstruct(CLI::App& app, Common& common);
 void add_inflate(CLI::App& app, Common& common);
 void add_distance(CLI::App& app, Common& common);
+void add_streamlines(CLI::App& app, Common& common);
 
 /// Adds `roundtrip` to the command `transform`.
 void add_roundtrip(CLI::App& transform, Common& common);

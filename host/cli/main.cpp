@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   cli::add_reconstruct(app, common);
   cli::add_inflate(app, common);
   cli::add_distance(app, common);
+  cli::add_streamlines(app, common);
   cli::add_inspect(app, common);
   cli::add_devices(app, common);
   cli::add_render(app, common);

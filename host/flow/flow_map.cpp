@@ -5,6 +5,7 @@
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/subdivide.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/spectrum/power.hpp"
 #include "host/spectrum/surface_fields.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,9 @@ namespace cowgpu {
 namespace {
 
 constexpr double paper_step = 0.05;
-constexpr double auto_tolerance = 1e-6; // of the star-shape time, in diagonals
+constexpr double auto_tolerance = 1e-6;   // of the star-shape time, in diagonals
+constexpr double suture_threshold = 0.04; // diagonals
+constexpr int level_set_grid_degree = 1024, sheet_grid_degree = 1024, parts_of_cell = 4, slope_from = 16;
 
 // The mean of an angle is kept as a number, not as a coefficient.
 void put_means(SurfaceExpansion& expansion) {
@@ -28,6 +31,14 @@ void put_means(SurfaceExpansion& expansion) {
   };
   expansion.mean_dtheta = take(1);
   expansion.mean_dphi = take(2);
+}
+
+SphereCoefficients with_means(const SurfaceExpansion& expansion) {
+  SphereCoefficients all = expansion.coefficients;
+  const double whole = std::sqrt(4 * std::numbers::pi);
+  all.at(1, 0, 0) = whole * expansion.mean_dtheta;
+  all.at(2, 0, 0) = whole * expansion.mean_dphi;
+  return all;
 }
 
 } // namespace
@@ -67,21 +78,68 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
   LevelSetExpansion result;
   result.star = star_shape_time(mesh.vertices, mesh.faces, options.origin, auto_tolerance * diagonal, backend, monitor);
   result.time = time > 0 ? time : result.star.upper;
-  if (!std::isfinite(result.time))
-    throw Error(Fault::map_failed,
-                "no time was found from which the inflated body is star-shaped about this origin: give "
-                "one, or take another origin");
+  if (result.star.given_up)
+    result.notes.push_back(fmt::format(
+        "The star-shape time is met all along an edge, and was proven only to {:.2g}, not to "
+        "{:.2g}: it lies between {:.9g} and {:.9g}.",
+        result.star.upper - result.star.lower, auto_tolerance * diagonal, result.star.lower, result.star.upper));
   const auto field = backend.distance_field(mesh.vertices, mesh.faces);
-  bool first = true; // the grid of the result comes before the one of the aliasing's estimate
-  const auto sampler = [&](const SphereGrid& grid, ExpandSurfaceReport&) {
-    LevelSetReport met;
+  result.sutures.threshold = suture_threshold * diagonal;
+  const auto fields_on = [&](const SphereGrid& grid, LevelSetReport& met, JumpReport& jumps, SutureReport* sutures) {
     const auto positions =
         level_set_positions(*field, box.min, box.max, options.origin, result.time, grid, monitor, &met);
-    if (first) result.level_set = met;
-    first = false;
-    return surface_fields(positions, grid, options.origin, options.signed_dphi);
+    if (sutures) *sutures = find_sutures(positions, grid, result.sutures.threshold);
+    return averaged_fields(*field, box.min, box.max, options.origin, result.time, grid, positions, options.signed_dphi,
+                           parts_of_cell, monitor, &jumps);
   };
-  result.expansion = expand_surface(sampler, options, backend, monitor, &result.report);
+  ExpandSurfaceOptions of_grid = options;
+  of_grid.grid_degree = options.grid_degree > 0 ? options.grid_degree
+                                                : std::max(level_set_grid_degree, surface_grid_degree(options.lmax));
+  of_grid.estimate_aliasing = false;
+  const auto finest = [&](const SphereGrid& grid, ExpandSurfaceReport&) {
+    return fields_on(grid, result.level_set, result.averaged, &result.sutures.jumps);
+  };
+  result.expansion = expand_surface(finest, of_grid, backend, monitor, &result.report);
+
+  // On two coarser grids, which hold fewer degrees.
+  const SphereCoefficients last = with_means(result.expansion);
+  std::array<SphereCoefficients, 2> coarser;
+  for (std::size_t k = 0; k < coarser.size(); ++k) {
+    const SphereGrid grid = make_grid(GridKind::gauss_legendre, of_grid.grid_degree >> (k + 1));
+    coarser[k] = SphereCoefficients(std::min(options.lmax, grid.lmax), last.fields);
+    LevelSetReport met;
+    JumpReport jumps;
+    const std::vector<double> values = fields_on(grid, met, jumps, nullptr);
+    backend.sphere_transform(grid, coarser[k].lmax)->analyse(last.fields, values, coarser[k].values, monitor);
+  }
+  const auto differences = [&](const SphereCoefficients& fine, const SphereCoefficients& coarse) {
+    std::vector<std::array<double, 6>> most(std::size_t(options.lmax) + 1), norms = most;
+    for (int l = 0; l <= std::min(fine.lmax, coarse.lmax); ++l)
+      for (int f = 0; f < last.fields; ++f)
+        for (int m = 0; m <= l; ++m) {
+          const double off = std::abs(fine.at(f, l, m) - coarse.at(f, l, m));
+          double &largest = most[std::size_t(l)][std::size_t(f)], &norm = norms[std::size_t(l)][std::size_t(f)];
+          largest = std::max(largest, off);
+          norm = std::hypot(norm, off, m == 0 ? 0 : off);
+        }
+    return std::pair(most, norms);
+  };
+  auto [change, norms] = differences(last, coarser[0]);
+  result.report.aliasing = std::move(norms);
+  const auto before = differences(coarser[0], coarser[1]).first;
+  for (std::size_t l = 0; l < change.size(); ++l)
+    for (std::size_t f = 0; f < 6; ++f) change[l][f] = std::max(change[l][f], before[l][f] / 4);
+  result.uncertainty = std::move(change);
+
+  if (options.lmax >= 2 * slope_from) {
+    result.sutures.slope_from = slope_from;
+    result.sutures.slope_to = options.lmax;
+    for (int f = 0; f < last.fields; ++f) {
+      const std::vector<double> s = power(last, f);
+      const bool any = *std::min_element(s.begin() + slope_from, s.end()) > 0;
+      result.sutures.slopes[std::size_t(f)] = any ? spectral_slope(s, slope_from, options.lmax) : std::nan("");
+    }
+  }
   return result;
 }
 
@@ -105,18 +163,19 @@ SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, 
   for (const RawMesh& level : meshes) {
     const SphereMap map = direction_map(std::span(ends.positions).first(level.vertices.size()), options.origin);
     SheetReport sheets;
+    bool first = true; // the grid of the result comes before the one of the aliasing's estimate
     const auto sampler = [&](const SphereGrid& grid, ExpandSurfaceReport&) {
-      return sheet_fields(level.vertices, level.faces, map.positions, grid, options.origin, options.signed_dphi,
-                          monitor, &sheets);
+      auto fields = sheet_fields(level.vertices, level.faces, map.positions, grid, options.origin, options.signed_dphi,
+                                 monitor, first ? &sheets : nullptr);
+      first = false;
+      return fields;
     };
     ExpandSurfaceOptions of_level = options;
-    of_level.estimate_aliasing = false;
+    if (options.grid_degree == 0) of_level.grid_degree = std::max(sheet_grid_degree, surface_grid_degree(options.lmax));
+    of_level.estimate_aliasing = &level == &meshes.back(); // for the uncertainty
     result.expansion = expand_surface(sampler, of_level, backend, monitor, &result.report);
     result.sheets.push_back(sheets);
-    result.levels.push_back(result.expansion.coefficients);
-    const double whole = std::sqrt(4 * std::numbers::pi);
-    result.levels.back().at(1, 0, 0) = whole * result.expansion.mean_dtheta;
-    result.levels.back().at(2, 0, 0) = whole * result.expansion.mean_dphi;
+    result.levels.push_back(with_means(result.expansion));
   }
   const std::size_t n = result.levels.size();
   const SphereCoefficients &last = result.levels[n - 1], &before = result.levels[n - 2];
@@ -127,11 +186,11 @@ SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, 
       for (int m = 0; m <= l; ++m) {
         const auto change = last.at(f, l, m) - before.at(f, l, m);
         result.expansion.coefficients.at(f, l, m) = last.at(f, l, m) + change;
-        double off = std::abs(change) / 2;
+        double off = std::max(std::abs(change) / 2, result.report.aliasing[std::size_t(l)][std::size_t(f)]);
         if (n > 2)
           off = std::max(off, std::abs(2. * change - (before.at(f, l, m) - result.levels[n - 3].at(f, l, m))));
         else
-          off = std::abs(change);
+          off = std::max(off, std::abs(change));
         double& most = result.uncertainty[std::size_t(l)][std::size_t(f)];
         most = std::max(most, off);
       }

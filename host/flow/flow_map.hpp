@@ -5,6 +5,7 @@
 #include "host/flow/level_set.hpp"
 #include "host/flow/sheets.hpp"
 #include "host/flow/star_shape.hpp"
+#include "host/flow/sutures.hpp"
 #include "host/mesh/raw_mesh.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
@@ -19,15 +20,32 @@ SphereMap direction_map(std::span<const Vec3> positions, const Vec3& origin);
 SphereMap paper_flow_map(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor,
                          double time = 0.2);
 
+/// Where the level set's map jumps and how slowly its coefficients fall because of that (host/flow/sutures.hpp).
+struct LevelSetSutures {
+  SutureReport jumps;               ///< on the finest grid
+  double threshold = 0;             ///< of them: 0.04 of the bounding box's diagonal
+  int slope_from = 0, slope_to = 0; ///< degrees; 0 where lmax is below 32: no slopes
+  /// By field (surface_field_names): of log(S_l / (2 l + 1)) over log l; NaN where a degree has no power.
+  std::array<double, 6> slopes{};
+};
+
 /// Expands the level set's map (host/flow/level_set.hpp); the options' closest_point means nothing here. `time` 0 takes the
-/// star-shape time's upper bound, found to 1e-6 of the diagonal.
+/// star-shape time's upper bound, looked for to 1e-6 of the diagonal; where that is given up, to what was proven, and a note says
+/// so. Of the options, grid_degree 0 is max(1024, 2 lmax), and aliasing is estimated whether asked for or not.
 struct LevelSetExpansion {
   SurfaceExpansion expansion;
   ExpandSurfaceReport report;
   LevelSetReport level_set;
   StarShapeTime star; ///< looked for even where the time is given
   double time = 0;    ///< T
+  /// [degree][field]: the largest over m of what a coefficient is off by. With e the change from the grid of half the degree
+  /// and e' the one before it: e or e' / 4, whichever is more. The means of the angles, as coefficients, are among degree 0.
+  std::vector<std::array<double, 6>> uncertainty;
+  LevelSetSutures sutures;
+  JumpReport averaged;            ///< on the finest grid
+  std::vector<std::string> notes; ///< sentences for the user
 };
+
 LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const ExpandSurfaceOptions& options,
                                    Backend& backend, Monitor& monitor);
 
@@ -35,8 +53,8 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
 struct SheetExpansion {
   SurfaceExpansion expansion; ///< extrapolated
   ExpandSurfaceReport report; ///< of the finest
-  /// [degree][field]: of the expansion, the largest over m. What the last two extrapolations differ by, and half the last
-  /// refinement's change, whichever is more.
+  /// [degree][field]: of the expansion, the largest over m. What the last two extrapolations differ by, half the last
+  /// refinement's change, and what the grid of half the degree gives differently, whichever is most.
   std::vector<std::array<double, 6>> uncertainty;
   std::vector<SphereCoefficients> levels; ///< of each refinement, means of the angles included
   std::vector<SheetReport> sheets;
@@ -44,7 +62,7 @@ struct SheetExpansion {
 };
 
 /// The sutures make the error fall by about half with each refinement, so a is extrapolated as 2 a_k - a_(k-1). The flow
-/// goes by events at `tolerance`. Throws Error(bad_argument) for refinements outside 1 ... 5 or time <= 0.
+/// goes by events at `tolerance`. Of the options, grid_degree 0 is max(1024, 2 lmax). Throws Error(bad_argument) for refinements outside 1 ... 5 or time <= 0.
 SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, double tolerance,
                              const ExpandSurfaceOptions& options, DistanceFlow& flow, Backend& backend,
                              Monitor& monitor);

@@ -29,4 +29,20 @@ std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, c
                                         double level, const SphereGrid& grid, Monitor& monitor,
                                         LevelSetReport* report = nullptr);
 
+/// The same for single directions (unit vectors), their F in their order; counts are added to the report's.
+std::vector<Vec3> level_set_points(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
+                                   double level, std::span<const Vec3> directions, Monitor& monitor,
+                                   LevelSetReport* report = nullptr);
+
+/// The six fields over the level set's map (host/spectrum/surface_fields.hpp), [field][ring][longitude], without the grid's
+/// error at jumps: where a field differs from a neighbour's by more than the threshold, its value is the mean over
+/// `parts` x `parts` directions of equal solid angle that fill the point's cell, of solid angle weight_i 2 pi / ring_length. The
+/// cells' edges in colatitude are where the weights add up to 1 - cos theta.
+struct JumpReport {
+  std::uint64_t cells = 0, points = 0; ///< averaged; of the grid
+};
+std::vector<double> averaged_fields(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
+                                    double level, const SphereGrid& grid, std::span<const double> positions,
+                                    bool signed_dphi, int parts, Monitor& monitor, JumpReport* report = nullptr);
+
 } // namespace cowgpu

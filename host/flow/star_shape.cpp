@@ -1,6 +1,7 @@
 #include "host/flow/star_shape.hpp"
 
 #include "host/error.hpp"
+#include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
 
 #include <Eigen/Geometry>
@@ -86,8 +87,27 @@ public:
     seed(vertices, faces);
   }
 
-  StarShapeTime run() {
-    std::vector<Region> waiting = std::move(seeds_);
+  StarShapeTime run(double farthest) {
+    const double finest = tolerance_;
+    found_.upper = farthest;
+    int tens = 0;
+    while (finest * std::pow(10., tens + 1) < diagonal_ / 10) ++tens;
+    for (; tens >= 0; --tens) {
+      tolerance_ = finest * std::pow(10., tens);
+      if (found_.upper <= found_.lower + tolerance_ && tens > 0) continue;
+      if (!settle()) {
+        found_.given_up = true;
+        break;
+      }
+      found_.upper = found_.lower + tolerance_;
+    }
+    return found_;
+  }
+
+private:
+  // Whether nothing is left above lower + tolerance.
+  bool settle() {
+    std::vector<Region> waiting = seeds_;
     while (!waiting.empty()) {
       // Depth first, in batches: what is found early rules out more.
       const std::size_t count = std::min(batch, waiting.size());
@@ -95,17 +115,12 @@ public:
       waiting.resize(waiting.size() - count);
       check_stop(monitor_);
       found_.regions += count;
-      if (found_.regions > most_regions) {
-        found_.upper = std::numeric_limits<double>::infinity();
-        return found_;
-      }
+      if (found_.regions > most_regions) return false;
       look(now, waiting);
     }
-    found_.upper = found_.lower + tolerance_;
-    return found_;
+    return true;
   }
 
-private:
   void seed(std::span<const Vec3> vertices, std::span<const Face> faces);
   void look(const std::vector<Region>& regions, std::vector<Region>& waiting);
   void raise(const std::vector<Region>& regions);
@@ -131,7 +146,7 @@ private:
   }
 
   const Vec3 origin_;
-  const double tolerance_;
+  double tolerance_;
   Monitor& monitor_;
   std::unique_ptr<DistanceField> field_;
   double diagonal_ = 0;
@@ -283,7 +298,7 @@ StarShapeTime star_shape_time(std::span<const Vec3> vertices, std::span<const Fa
                               double tolerance, Backend& backend, Monitor& monitor) {
   if (faces.empty()) throw Error(Fault::bad_argument, "a surface without faces is not star-shaped at any time");
   if (!origin.allFinite()) throw Error(Fault::bad_argument, "the origin of a star-shaped body must be finite");
-  return Search(vertices, faces, origin, tolerance, backend, monitor).run();
+  return Search(vertices, faces, origin, tolerance, backend, monitor).run(brillouin_radius(vertices, faces, origin));
 }
 
 } // namespace cowgpu

@@ -11,7 +11,8 @@ namespace cowgpu {
 /// a star-shaped set so: it is star-shaped for every t above, and for none below `lower`.
 struct StarShapeTime {
   double lower = 0; ///< 0 if the body is star-shaped as it is
-  double upper = 0; ///< infinite if the search was given up
+  double upper = 0;
+  bool given_up = false; ///< the bounds are farther apart than asked for
   /// The witness of `lower`: at q + t n, for every t just below it, the inflated body's surface looks away from the origin.
   Vec3 point = Vec3::Zero();  ///< q, on the surface
   Vec3 normal = Vec3::Zero(); ///< n, a unit vector of its normal cone
@@ -31,7 +32,9 @@ struct StarShapeTime {
 /// neighbourhood. Rounding is allowed for by 1e-12 of the diagonal.
 ///
 /// Some 1e5 to 1e6 queries where the supremum is met at points. Where it is met all along an edge, as between two parallel
-/// boxes, they grow like length / tolerance, and after 2e7 regions the search is given up.
+/// boxes, they grow like length / tolerance. So the tolerance goes down from the diagonal by tens, and the search is given up
+/// once it would look at more than 2e7 regions in all: the upper bound is then that of the tolerance before, proven all the same (that of
+/// the first needs no search: no surface point is farther from the origin).
 ///
 /// The surface must be a closed manifold (ManifoldSurface). Throws Error(bad_argument) for an origin that is not finite or a tolerance below 1e-9 of
 /// the diagonal, what DistanceField throws, interrupted.
