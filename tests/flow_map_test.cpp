@@ -220,7 +220,7 @@ TEST_CASE("signed sheets of the benchmark at 0.2 are known to 1e-3 up to degree 
   if (!cow) return skip_without_cow();
   const auto backend = make_cpu_backend();
   Monitor monitor;
-  const auto flow = make_cpu_flow(cow->vertices(), cow->faces());
+  const auto flow = backend->distance_flow(cow->vertices(), cow->faces());
   ExpandSurfaceOptions options;
   options.lmax = 8;
   const SheetExpansion found = expand_sheets(cow->mesh(), 0.2, 4, 1e-6, options, *flow, *backend, monitor);

@@ -39,7 +39,7 @@ double whole_area(const std::vector<CutLoop>& loops, const Plane& plane) {
 
 Streamlines flow(const RawMesh& mesh, const StreamlineStarts& starts, const Vec3& origin, double time) {
   const auto backend = make_cpu_backend();
-  const auto flow = make_cpu_flow(mesh.vertices, mesh.faces);
+  const auto flow = backend->distance_flow(mesh.vertices, mesh.faces);
   FlowOptions options;
   options.time = time;
   Monitor monitor;

@@ -102,14 +102,12 @@ void run(const Options& options, const Common& common) {
   std::string note;
   const auto backend = open_backend(common, &note);
   if (!note.empty()) notes.push_back(note);
-  if (backend->facts().type != "cpu") notes.push_back("streamlines are computed on the CPU path");
-  const auto cpu = make_cpu_backend(common.threads);
-  const auto flow = make_cpu_flow(mesh.vertices, mesh.faces, common.threads);
+  const auto flow = backend->distance_flow(mesh.vertices, mesh.faces);
   FlowOptions how;
   how.time = table.time;
   how.tolerance = options.tolerance;
   ConsoleMonitor monitor(common.style());
-  table.found = streamlines(mesh.vertices, mesh.faces, table.starts, table.origin, how, *flow, *cpu, monitor);
+  table.found = streamlines(mesh.vertices, mesh.faces, table.starts, table.origin, how, *flow, *backend, monitor);
   monitor.clear();
   const double flow_seconds = seconds_since(start);
 

@@ -222,7 +222,7 @@ StreamlineStarts starts_near(const Plane& plane, double within, std::span<const 
 }
 
 Streamlines streamlines(std::span<const Vec3> vertices, std::span<const Face> faces, const StreamlineStarts& starts,
-                        const Vec3& origin, FlowOptions options, const DistanceFlow& flow, Backend& backend,
+                        const Vec3& origin, FlowOptions options, DistanceFlow& flow, Backend& backend,
                         Monitor& monitor) {
   options.streamlines = true;
   Streamlines found;

@@ -66,7 +66,7 @@ struct Streamlines {
 /// Flows the starts by events. `options.streamlines` is taken as true. Throws Error(map_failed) for a line that ends at
 /// the origin, and what DistanceFlow and DistanceField throw.
 Streamlines streamlines(std::span<const Vec3> vertices, std::span<const Face> faces, const StreamlineStarts& starts,
-                        const Vec3& origin, FlowOptions options, const DistanceFlow& flow, Backend& backend,
+                        const Vec3& origin, FlowOptions options, DistanceFlow& flow, Backend& backend,
                         Monitor& monitor);
 
 } // namespace cowgpu
