@@ -121,7 +121,7 @@ void run(const Options& options, const Common& common) {
                                   {"command", common.command},
                                   {"created", utc_now()}};
     all.update(streamlines_json(table));
-    all["device"] = device_json(cpu->facts());
+    all["device"] = device_json(backend->facts());
     all["notes"] = notes;
     all["timings"] = {{"read", read_seconds}, {"flow", flow_seconds}};
     return json_text(all) + "\n";
