@@ -24,12 +24,12 @@ void level_set(double time, int grid_degree, ExpandSurfaceOptions options, const
                Backend& backend, Monitor& monitor, SurfaceResult& result) {
   FlowResult& flow = *result.flow;
   options.grid_degree = std::max(grid_degree, surface_grid_degree(options.lmax));
-  options.estimate_aliasing = true; // the uncertainty
   LevelSetExpansion found = expand_level_set(surface.closed().mesh(), time, options, backend, monitor);
   flow.time = found.time;
   flow.star = found.star;
   flow.level_set = found.level_set;
-  flow.uncertainty = found.report.aliasing;
+  flow.uncertainty = std::move(found.uncertainty);
+  flow.sutures = found.sutures;
   result.expansion = std::move(found.expansion);
   result.report = std::move(found.report);
   const auto start = Clock::now();

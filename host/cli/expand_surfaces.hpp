@@ -15,7 +15,7 @@ struct FlowChoice {
   double time = 0;     ///< T > 0 in the mesh's length unit; 0: the least from which the inflated body is star-shaped
   bool sheets = false; ///< signed sheets instead of the level set
   /// Least degree of the grid that a level set is met on: its sutures cut the fields, so that errors fall slowly.
-  int grid_degree = 2048;
+  int grid_degree = 1024;
   int refinements = 3; ///< of the mesh, for sheets and the paper's recipe
 };
 

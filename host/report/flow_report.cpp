@@ -37,6 +37,19 @@ ordered_json sheets_json(const std::vector<SheetReport>& sheets) {
   return levels;
 }
 
+ordered_json sutures_json(const LevelSetSutures& sutures) {
+  const SutureReport& jumps = sutures.jumps;
+  return {{"threshold", sutures.threshold},
+          {"length", jumps.length},
+          {"cells", jumps.cells},
+          {"largest", jumps.largest},
+          {"theta", jumps.theta},
+          {"phi", jumps.phi},
+          {"box", {point_json(jumps.low), point_json(jumps.high)}},
+          {"slope_degrees", {sutures.slope_from, sutures.slope_to}},
+          {"slopes", sutures.slopes}}; // the library writes NaN as null
+}
+
 ordered_json converged_json(const ConvergedTable& table) {
   const SphereCoefficients& a = table.expansion.coefficients;
   ordered_json rows = ordered_json::array();
@@ -142,6 +155,7 @@ ordered_json flow_json(const FlowResult& flow) {
                          {"largest_residual", flow.level_set->largest_residual},
                          {"least_slope", flow.level_set->least_slope},
                          {"unsettled", flow.level_set->unsettled}};
+  if (flow.sutures) json["sutures"] = sutures_json(*flow.sutures);
   if (flow.converged) json["converged"] = converged_json(*flow.converged);
   return json;
 }
@@ -164,6 +178,19 @@ void write_flow_screen(const FlowResult& flow, const std::function<void(std::str
         "  flow: level set met to {:.1e} with {} closest points; least slope along a ray {:.3g}{}\n",
         flow.level_set->largest_residual, flow.level_set->queries, flow.level_set->least_slope,
         flow.level_set->unsettled > 0 ? fmt::format("; {} directions not settled", flow.level_set->unsettled) : ""));
+  if (!flow.sutures) return;
+  const SutureReport& jumps = flow.sutures->jumps;
+  if (jumps.pairs == 0) {
+    sink(fmt::format("  flow: no sutures: F jumps nowhere by more than {:.3g}\n", flow.sutures->threshold));
+    return;
+  }
+  sink(fmt::format(
+      "  flow: sutures: F jumps by more than {:.3g} along {:.3g} rad, most by {:.4g} at theta {:.4f}, phi {:.4f}\n",
+      flow.sutures->threshold, jumps.length, jumps.largest, jumps.theta, jumps.phi));
+  if (flow.sutures->slope_to > 0)
+    sink(fmt::format("  flow: power per coefficient falls like l^{:.2f} (f_r) and l^{:.2f} (x), l = {} to {}\n",
+                     flow.sutures->slopes[0], flow.sutures->slopes[3], flow.sutures->slope_from,
+                     flow.sutures->slope_to));
 }
 
 } // namespace cowgpu

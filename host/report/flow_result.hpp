@@ -30,6 +30,7 @@ struct FlowResult {
   FlowReport points;               ///< of the mesh's vertices, or of the finest refinement's
   std::vector<SheetReport> sheets; ///< of each refinement, the mesh itself first
   std::optional<LevelSetReport> level_set;
+  std::optional<LevelSetSutures> sutures; ///< of the level set's map
   /// [degree][field], the largest over m; empty where none is known (the paper's recipe).
   std::vector<std::array<double, 6>> uncertainty;
   std::optional<ConvergedTable> converged; ///< of the paper's recipe: signed sheets at the same time
