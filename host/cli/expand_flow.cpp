@@ -137,11 +137,7 @@ StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Back
 }
 
 double flow_time(double given, const StarShapeTime& star) {
-  if (given > 0) return given;
-  if (!std::isfinite(star.upper))
-    throw Error(Fault::map_failed, "no time was found from which the inflated body is star-shaped about this origin: "
-                                   "give one with --time, or take another origin");
-  return star.upper;
+  return given > 0 ? given : star.upper;
 }
 
 double parse_flow_time(const std::string& text) {

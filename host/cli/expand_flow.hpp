@@ -22,7 +22,6 @@ FlowPoints flow_vertices(const ManifoldSurface& surface, double time, Backend& b
                          FlowReport& report);
 
 /// The time a command flows for: the given one, or for 0 that bound of the star-shape time which is surely enough.
-/// Throws Error(map_failed) where none was found.
 double flow_time(double given, const StarShapeTime& star);
 
 /// Reads --time: "auto" (0), or a finite number above 0. Throws Error(bad_argument).

@@ -11,7 +11,7 @@ namespace cowgpu {
 /// a star-shaped set so: it is star-shaped for every t above, and for none below `lower`.
 struct StarShapeTime {
   double lower = 0; ///< 0 if the body is star-shaped as it is
-  double upper = 0;
+  double upper = 0; ///< proven
   bool given_up = false; ///< the bounds are farther apart than asked for
   /// The witness of `lower`: at q + t n, for every t just below it, the inflated body's surface looks away from the origin.
   Vec3 point = Vec3::Zero();  ///< q, on the surface

@@ -84,15 +84,12 @@ std::array<double, 6> largest_of(const std::vector<std::array<double, 6>>& rows,
 }
 
 std::string star_shape_text(const StarShapeTime& star) {
-  if (!std::isfinite(star.upper))
-    return fmt::format("no time was proven from which the inflated body is star-shaped about the origin; before "
-                       "{:.9g} it is not",
-                       star.lower);
   std::string text =
       fmt::format("star-shaped about the origin from t* on, {:.9g} <= t* <= {:.9g}", star.lower, star.upper);
   if (star.lower > 0)
     text += fmt::format(" (witness at {}, inflated from {})", point_text(star.place), point_text(star.point));
-  return text + fmt::format(", from {} regions", star.regions);
+  text += fmt::format(", from {} regions", star.regions);
+  return star.given_up ? text + "; the search for closer bounds was given up" : text;
 }
 
 std::string star_shape_sentence(const StarShapeTime& star, double time) {
@@ -107,7 +104,8 @@ std::string star_shape_sentence(const StarShapeTime& star, double time) {
 
 ordered_json star_shape_json(const StarShapeTime& star) {
   return {{"lower", star.lower},
-          {"upper", star.upper}, // infinite is null
+          {"upper", star.upper},
+          {"given_up", star.given_up},
           {"point", point_json(star.point)},
           {"normal", point_json(star.normal)},
           {"place", point_json(star.place)},
