@@ -48,6 +48,8 @@ for arguments in (
     ["builtin:box:1,2,3", "--lmax", "7"],
     ["builtin:sphere@2", "--lmax", "40", "--origin", "mesh", "--density", "2.5", "--verify", "full"],
     ["builtin:tetrahedron", "--lmax", "3", "--origin", "1,-2,3", "--verify", "none"],
+    ["builtin:box:3,2,2", "--lmax", "5", "--device", "cpu", "--length-unit", "cm", "--density", "2g/cm3", "--part", "builtin:box:1,1,1=-500kg/m3"],
+    ["builtin:box", "--lmax", "2", "--device", "cpu", "--origin", "mesh", "--part", "builtin:box=-1"],
 ):
     result = expand(*arguments, "--json")
     jsonschema.validate(result, schema)
@@ -56,8 +58,10 @@ for arguments in (
     expected = [(l, m) for l in range(mass["lmax"] + 1) for m in range(l + 1)]
     assert [(row[0], row[1]) for row in mass["coefficients"]] == expected, "sorted by l, then m"
     q00 = mass["coefficients"][0][2]
-    want = result["mesh"]["volume"] * mass["density"] / (4 * 3.141592653589793) ** 0.5
-    assert abs(q00 - want) < 1e-14 * abs(want), "Q_00 is the mass over sqrt(4 pi)"
+    body = result["mesh"]
+    weigh = [body["volume"] * mass["density"]] + [part["mass"] for part in body["parts"]]
+    assert abs(body["mass"] - sum(weigh)) <= 1e-15 * sum(map(abs, weigh))
+    assert abs(q00 - body["mass"] / (4 * 3.141592653589793) ** 0.5) < 1e-14 * max(map(abs, weigh)), "Q_00 is the mass over sqrt(4 pi)"
 
 for of, want in (("all", ["mass", "harmonic", "stretch", "smooth", "flow"]), ("stretch,harmonic", ["harmonic", "stretch"])):
     both = expand("builtin:cow@1", "--of", of, "--lmax", "9", "--device", "cpu", "--aliasing", "--json", *(["--flow-grid", "64"] if of == "all" else []))

@@ -60,7 +60,7 @@ void run(const Options& options, Common& common) {
                              "of peak", "ratio"));
   }
   for (const int lmax : options.lmax) {
-    const MomentProblem problem = mass_problem(body, lmax, options.cut_off);
+    const MomentProblem problem = mass_problems(body, lmax, options.cut_off).front();
     for (Path& path : paths) {
       path.backend->moments(problem, monitor); // warms up
       path.seconds.clear();

@@ -1,3 +1,4 @@
+#include "host/cli/body_options.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/expand_flow.hpp"
 #include "host/cli/expand_surfaces.hpp"
@@ -5,7 +6,6 @@
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/mesh_source.hpp"
 #include "host/plan/moments.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
@@ -16,7 +16,7 @@ namespace cowgpu::cli {
 namespace {
 
 struct Options {
-  std::string mesh = "builtin:cow";
+  BodyOptions body;
   std::string of = "mass";
   std::string recipe = "default";
   std::string map_file;
@@ -25,8 +25,6 @@ struct Options {
   int refinements = FlowChoice{}.refinements, flow_grid = FlowChoice{}.grid_degree;
   bool flow_options = false;
   int lmax = 8;
-  std::string origin = "com";
-  double density = 1;
   double cut_off = default_cut_off;
   std::string verify = "sample";
   std::uint64_t seed = 1;
@@ -88,36 +86,49 @@ std::uint64_t all_json_bytes(const ExpansionChoice& choice) {
 }
 
 // What the run needs at most: the result, and either the computation or its check.
-MemoryNeed memory_need(const Options& options, const ExpansionChoice& choice, const MomentProblem& problem,
+MemoryNeed memory_need(const Options& options, const ExpansionChoice& choice, std::span<const MomentProblem> problems,
                        const Backend& backend) {
-  const MemoryNeed surfaces = surfaces_memory(choice, problem.faces.size(), backend);
-  if (!choice.mass) return surfaces;
-  const MemoryNeed need = backend.moments_memory(problem);
+  MemoryNeed need = surfaces_memory(choice, problems.front().faces.size(), backend);
+  if (!choice.mass) return need;
   const std::uint64_t result = 16 * Coefficients::count(options.lmax);
-  const std::uint64_t check = result + verify_bytes(problem, backend, parse_verify(options.verify));
-  return {std::max({need.host, check, surfaces.host ? surfaces.host + result : 0}),
-          std::max(need.device, surfaces.device)};
+  if (need.host) need.host += result;
+  for (const MomentProblem& problem : problems) { // one after the other, beside the sum of those before
+    const MemoryNeed one = backend.moments_memory(problem);
+    const std::uint64_t before = &problem == problems.data() ? 0 : result;
+    const std::uint64_t check = result + verify_bytes(problem, backend, parse_verify(options.verify));
+    need.host = std::max({need.host, one.host + before, check});
+    need.device = std::max(need.device, one.device);
+  }
+  return need;
 }
 
-void write_mass_plan(const Options& options, const Body& body, const MomentProblem& problem, const Backend& backend) {
-  const plan::Moments plan = plan::moments(problem, int(backend.facts().subgroup));
+void write_mass_plan(const Options& options, const Body& body, std::span<const MomentProblem> problems,
+                     const Backend& backend) {
+  std::uint64_t pairs = 0;
+  double elements = 0, full = 0;
+  for (const MomentProblem& problem : problems) {
+    const plan::Moments plan = plan::moments(problem, int(backend.facts().subgroup));
+    pairs += plan.pair_count;
+    elements += plan.elements;
+    full += plan.full_elements;
+  }
   write_stdout(
       fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, {:.9g}) "
                   "({}), R = {:.9g}\n",
                   options.lmax, Coefficients::count(options.lmax), body.origin.x(), body.origin.y(), body.origin.z(),
                   body.origin_kind, body.brillouin_radius));
   write_stdout(fmt::format("work: {} pairs of triangles, {:.3g} of {:.3g} recursion entries after the cut-off {:.0e}\n",
-                           plan.pair_count, plan.elements, plan.full_elements, options.cut_off));
+                           pairs, elements, full, options.cut_off));
 }
 
-void write_plan(const Options& options, const ExpansionChoice& choice, const Body& body, const MomentProblem& problem,
-                const Backend& backend) {
-  const MemoryNeed need = memory_need(options, choice, problem, backend);
+void write_plan(const Options& options, const ExpansionChoice& choice, const Body& body,
+                std::span<const MomentProblem> problems, const Backend& backend) {
+  const MemoryNeed need = memory_need(options, choice, problems, backend);
   write_stdout(mesh_line(body.surface.mesh()) + "\n");
   for (const std::string& map : choice.maps)
     write_stdout(fmt::format("plan: surface over the {} map to degree {}, {} coefficients of each of six fields\n", map,
                              options.lmax, SphereCoefficients::count(options.lmax)));
-  if (choice.mass) write_mass_plan(options, body, problem, backend);
+  if (choice.mass) write_mass_plan(options, body, problems, backend);
   write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
   write_stdout(
       fmt::format("memory: at most {} MiB on the host and {} MiB on the device, beside the mesh and the program; "
@@ -129,7 +140,7 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
                      std::unique_ptr<Backend> backend, std::vector<std::string> notes, Timings timings,
                      Stopwatch& watch) {
   ConsoleMonitor monitor(common.style());
-  const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
+  const std::vector<MomentProblem> problems = mass_problems(body, options.lmax, options.cut_off);
   RunReport run;
   Coefficients mass;
   Accuracy accuracy;
@@ -138,9 +149,9 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
   std::vector<SurfaceResult> surfaces = expand_surfaces(choice, options.aliasing, body, *backend, monitor);
   timings.surfaces = watch.lap();
   if (choice.mass) {
-    mass = backend->moments(problem, monitor, &run);
+    mass = mass_moments(problems, *backend, monitor, &run);
     timings.moments = watch.lap();
-    accuracy = verify_moments(problem, *backend, parse_verify(options.verify), options.seed, monitor);
+    accuracy = verify_all(problems, *backend, parse_verify(options.verify), options.seed, monitor);
     if (accuracy.how != Verify::none) accuracy.agreements.push_back(compare_with_tensors(body, mass));
     timings.verify = watch.lap();
   }
@@ -157,19 +168,19 @@ void run(const Options& options, Common& common) {
   check_outputs(options);
   ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.map_file, options.lmax);
   choice.flow = flow_choice(options, choice);
-  const OriginChoice origin = parse_origin(options.origin);
   // Before long work: a result that cannot be written should fail now.
   std::vector<std::unique_ptr<AtomicFile>> files;
   for (const std::string& path : options.outputs) {
-    refuse_same_file(options.mesh, path);
+    for (const std::string& input : input_files(options.body)) refuse_same_file(input, path);
     if (!options.map_file.empty()) refuse_same_file(options.map_file, path);
   }
   if (!options.dry_run)
     for (const std::string& path : options.outputs) files.push_back(std::make_unique<AtomicFile>(path));
 
-  RawMesh mesh = load_mesh(options.mesh);
-  std::vector<std::string> notes = mesh.notes;
-  Body body = make_body(ClosedSurface::from(std::move(mesh)), origin, options.density);
+  std::vector<std::string> notes;
+  Body body = load_body(options.body, notes);
+  if (!body.parts.empty() && !choice.maps.empty())
+    notes.push_back("the surface that is mapped and expanded is MESH's alone: parts have mass only");
   Timings timings;
   timings.load = watch.lap();
   std::string note;
@@ -179,11 +190,11 @@ void run(const Options& options, Common& common) {
     if (!common.quiet) say(fmt::format("cowgpu: {}\n", note));
     notes.push_back(note);
   }
-  const MomentProblem problem = mass_problem(body, options.lmax, options.cut_off);
-  check_memory(memory_need(options, choice, problem, *backend), *backend,
+  const std::vector<MomentProblem> problems = mass_problems(body, options.lmax, options.cut_off);
+  check_memory(memory_need(options, choice, problems, *backend), *backend,
                "lower --lmax or take a mesh with fewer triangles");
   if (options.dry_run) {
-    write_plan(options, choice, body, problem, *backend);
+    write_plan(options, choice, body, problems, *backend);
     return;
   }
   const ExpandResult result =
@@ -227,7 +238,7 @@ void add_expand(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("expand", "Multipole moments of a closed mesh, and its surface over maps to the sphere");
-  command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  add_body_options(*command, options->body);
   command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
       ->check(CLI::Range(0, largest_degree))
       ->capture_default_str();
@@ -278,9 +289,6 @@ void add_expand(CLI::App& app, Common& common) {
                           ->capture_default_str();
   command->add_flag("--aliasing", options->aliasing,
                     "Estimate the aliasing of surface expansions, degree by degree (the paper's recipe always does)");
-  command->add_option("--origin", options->origin, "com (centre of mass), mesh, or X,Y,Z in mesh coordinates")
-      ->capture_default_str();
-  command->add_option("--density", options->density, "Mass per cubed length unit of the mesh")->capture_default_str();
   command
       ->add_option("--cut-off", options->cut_off,
                    "Leave out, degree by degree, triangles that add up to less than this part of the degree's bound "

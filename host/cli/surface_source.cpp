@@ -14,8 +14,12 @@
 namespace cowgpu::cli {
 namespace {
 
-Body load_body(const std::string& mesh) {
-  return make_body(ClosedSurface::from(load_mesh(mesh)), {}, 1);
+Body body_of(const std::string& name, const Placement& placement = {}) {
+  RawMesh mesh = load_mesh(name);
+  place(mesh, placement);
+  Body body = make_body(ClosedSurface::from(std::move(mesh)), {}, 1);
+  body.placement = placement;
+  return body;
 }
 
 ExpansionChoice expansion_choice(const SurfaceChoice& choice, int largest_order) {
@@ -38,7 +42,7 @@ SurfaceSource from_file(const SurfaceChoice& choice) {
   source.mesh = file.mesh;
   source.mesh_hash = file.mesh_hash;
   if (choice.mesh.empty()) return source;
-  source.body = load_body(choice.mesh);
+  source.body = body_of(choice.mesh, file.placement);
   const RawMesh& mesh = source.body->surface.mesh();
   source.notes = mesh.notes;
   if (mesh.sha256 != source.mesh_hash)
@@ -49,7 +53,7 @@ SurfaceSource from_file(const SurfaceChoice& choice) {
 SurfaceSource from_mesh(const SurfaceChoice& choice, int largest_order, Backend& backend, Monitor& monitor) {
   const ExpansionChoice maps = expansion_choice(choice, largest_order);
   SurfaceSource source;
-  source.body = load_body(choice.input);
+  source.body = body_of(choice.input);
   const RawMesh& mesh = source.body->surface.mesh();
   source.mesh = mesh.name;
   source.mesh_hash = mesh.sha256;

@@ -3,6 +3,7 @@
 #include "host/error.hpp"
 #include "host/io/file.hpp"
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,31 @@ double number(const std::string& name, const json& object, const char* key) {
   const json& value = member(name, object, key);
   if (!value.is_number()) throw Error(Fault::file_format, fmt::format("{}: the member '{}' is no number", name, key));
   return value.get<double>();
+}
+
+Placement placement(const std::string& name, const json& document) {
+  Placement placement;
+  const json& mesh = member(name, document, "mesh");
+  if (!mesh.is_object() || !mesh.contains("placement")) return placement;
+  const json& object = mesh.at("placement");
+  if (!member(name, object, "metres_per_unit").is_null()) {
+    placement.metric = true;
+    placement.scale = number(name, object, "metres_per_unit");
+  }
+  const json& rows = member(name, object, "rotation");
+  bool matrix = placement.scale > 0 && rows.is_array() && rows.size() == 3;
+  for (int row = 0; matrix && row < 3; ++row) {
+    const json& line = rows[std::size_t(row)];
+    matrix = line.is_array() && line.size() == 3;
+    for (int c = 0; matrix && c < 3; ++c) {
+      matrix = line[std::size_t(c)].is_number();
+      if (matrix) placement.rotation(row, c) = line[std::size_t(c)].get<double>();
+    }
+  }
+  if (!matrix || !placement.rotation.isUnitary(1e-9) || !(placement.rotation.determinant() > 0))
+    throw Error(Fault::file_format,
+                fmt::format("{}: mesh.placement is no length above 0 (metres_per_unit) and rotation matrix", name));
+  return placement;
 }
 
 SphereCoefficients coefficients(const std::string& name, const json& expansion, int fields, int largest) {

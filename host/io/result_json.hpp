@@ -1,6 +1,7 @@
 // Parts of result files (data/schemas/cowgpu.result.v1.json) that the readers of expansions share.
 #pragma once
 
+#include "host/mesh/placement.hpp"
 #include "host/sphere_coefficients.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,6 +20,10 @@ const nlohmann::json& member(const std::string& name, const nlohmann::json& obje
 
 /// A member that is a number. Throws Error(file_format).
 double number(const std::string& name, const nlohmann::json& object, const char* key);
+
+/// The member `mesh.placement`: the identity where a file has none. Throws Error(file_format) for a scale that is not
+/// above 0 or a matrix that is no rotation to 1e-9.
+Placement placement(const std::string& name, const nlohmann::json& document);
 
 /// The members `lmax` and `coefficients` of an expansion: rows [l, m, re, im of each field] by l, then m. Allocates only
 /// what there are rows for. Throws Error(file_format) where lmax is none, above `largest` or not that of the rows, or

@@ -89,6 +89,7 @@ SurfaceFile read_surface(const std::filesystem::path& path, const std::string& o
   const json& mesh = member(name, all, "mesh");
   file.mesh = text(name, mesh, "name");
   file.mesh_hash = text(name, mesh, "sha256");
+  file.placement = result_json::placement(name, all);
   expansion.coefficients =
       result_json::coefficients(name, surface, int(surface_field_names.size()), largest_surface_degree);
   const double mean = spherical_radius(expansion);

@@ -1,6 +1,7 @@
 // Surface expansions in the JSON that `cowgpu expand` writes, read back.
 #pragma once
 
+#include "host/mesh/placement.hpp"
 #include "host/spectrum/reconstruct.hpp"
 
 #include <filesystem>
@@ -15,6 +16,7 @@ struct SurfaceFile {
   std::string recipe;          ///< "default" or "paper"
   std::string map_method;      ///< "stretch", "file" ...
   std::string mesh, mesh_hash; ///< name and SHA-256 of the mesh that was expanded
+  Placement placement;         ///< of that mesh
 };
 
 /// Whether a name is that of a result file rather than of a mesh: it ends in .json.

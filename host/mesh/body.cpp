@@ -4,28 +4,83 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cowgpu {
+namespace {
 
-Body make_body(ClosedSurface surface, const OriginChoice& origin, double density) {
+void check_density(double density) {
   if (!std::isfinite(density) || density == 0 || std::abs(density) > 1e50 || std::abs(density) < 1e-50)
     throw Error(Fault::bad_argument, fmt::format("the density {} must be finite and between 1e-50 and 1e50", density));
+}
+
+// The mean of the centres, weighed by mass, as seen from the first of them; nothing where the masses cancel.
+std::optional<Vec3> common_centre(const Body& body, const Vec3& own) {
+  using Extended = Eigen::Matrix<long double, 3, 1>;
+  const long double first = (long double)(body.density) * body.volume;
+  long double mass = first, weight = std::abs(first);
+  Extended sum = Extended::Zero();
+  for (const Part& part : body.parts) {
+    const long double m = (long double)(part.density) * part.volume;
+    mass += m;
+    weight += std::abs(m);
+    sum += m * (part.centre_of_mass.cast<long double>() - own.cast<long double>());
+  }
+  if (!(std::abs(mass) > 1e-12L * weight)) return std::nullopt;
+  return Vec3((own.cast<long double>() + sum / mass).cast<double>());
+}
+
+} // namespace
+
+Part::Part(ClosedSurface s, double d) : surface(std::move(s)), density(d) {
+  check_density(density);
+  volume = cowgpu::volume(surface);
+  centre_of_mass = cowgpu::centre_of_mass(surface);
+}
+
+double Body::mass() const {
+  long double sum = (long double)(density)*volume;
+  for (const Part& part : parts) sum += (long double)(part.density) * part.volume;
+  return double(sum);
+}
+
+Body make_body(ClosedSurface surface, const OriginChoice& origin, double density, std::vector<Part> parts) {
+  check_density(density);
   Body body(std::move(surface));
   body.density = density;
+  body.parts = std::move(parts);
   body.volume = volume(body.surface);
   body.area = area(body.surface);
-  body.centre_of_mass = centre_of_mass(body.surface);
   body.box = bounding_box(body.surface);
+  for (const Part& part : body.parts) {
+    const Box box = bounding_box(part.surface);
+    body.box = {body.box.min.cwiseMin(box.min), body.box.max.cwiseMax(box.max)};
+  }
+  const Vec3 own = centre_of_mass(body.surface);
+  const std::optional<Vec3> centre = body.parts.empty() ? own : common_centre(body, own);
+  if (!centre && !origin.point)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("body and parts weigh {:.3g} together, nothing but rounding: they have no centre of mass to "
+                    "take moments about; give --origin mesh or --origin X,Y,Z",
+                    body.mass()));
+  body.centre_of_mass = centre.value_or(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   body.origin = origin.point.value_or(body.centre_of_mass);
   body.origin_kind = origin.kind;
-  body.brillouin_radius = brillouin_radius(body.surface, body.origin);
-  const double own = brillouin_radius(body.surface, body.box.middle());
-  if (!(body.brillouin_radius <= 1e6 * own))
+  const auto radius_about = [&](const Vec3& about) {
+    double radius = brillouin_radius(body.surface, about);
+    for (const Part& part : body.parts) radius = std::max(radius, brillouin_radius(part.surface, about));
+    return radius;
+  };
+  body.brillouin_radius = radius_about(body.origin);
+  const double size = radius_about(body.box.middle());
+  if (!(body.brillouin_radius <= 1e6 * size))
     throw Error(Fault::bad_argument,
                 fmt::format("the origin ({}, {}, {}) is {:.1e} body radii away; moments about it would be nothing but "
                             "rounding: choose one within 1e6 radii, or the centre of mass",
-                            body.origin.x(), body.origin.y(), body.origin.z(), body.brillouin_radius / own));
+                            body.origin.x(), body.origin.y(), body.origin.z(), body.brillouin_radius / size));
   return body;
 }
 

@@ -25,7 +25,15 @@ std::string mass_comments(const ExpandResult& result) {
   append_number(text, q.reference_radius);
   text += "\n# density ";
   append_number(text, q.density);
-  return text + fmt::format("\n# origin ({}) {}\n", result.body.origin_kind, numbers(q.origin));
+  text += "\n";
+  for (const Part& part : result.body.parts) {
+    text +=
+        fmt::format("# part {}, sha256 {}: adds the density ", part.surface.mesh().name, part.surface.mesh().sha256);
+    append_number(text, part.density);
+    text += "\n";
+  }
+  if (result.body.placement.metric) text += "# units m, kg\n";
+  return text + fmt::format("# origin ({}) {}\n", result.body.origin_kind, numbers(q.origin));
 }
 
 std::string surface_comments(const SurfaceResult& surface) {
@@ -62,8 +70,8 @@ void write_csv(const ExpandResult& result, const Sink& sink) {
   const int lmax = result.has_mass ? result.mass.lmax : result.surfaces.front().expansion.coefficients.lmax;
   if (!result.surfaces.empty()) {
     text += "# of surfaces: a_lm of fields f = sum a_lm Y_lm over the sphere of a map; orthonormal, Condon-Shortley "
-            "phase;\n# f_r, x, y, z in the mesh's length unit, f_dtheta and f_dphi in radians; a_l,-m = (-1)^m conj "
-            "a_lm\n";
+            "phase;\n# f_r, x, y, z in " +
+            result.surfaces.front().length_unit + ", f_dtheta and f_dphi in radians; a_l,-m = (-1)^m conj a_lm\n";
     if (!result.has_mass) text += fmt::format("# lmax {}\n", lmax);
   }
   for (const SurfaceResult& surface : result.surfaces) {

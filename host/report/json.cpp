@@ -22,17 +22,36 @@ ordered_json json_of(const Eigen::Matrix3d& m) {
   return rows;
 }
 
-ordered_json json_of(const Body& body) {
-  const RawMesh& mesh = body.surface.mesh();
+ordered_json json_of(const Part& part) {
+  const RawMesh& mesh = part.surface.mesh();
   return {{"name", mesh.name},
           {"sha256", mesh.sha256},
           {"vertices", mesh.vertices.size()},
           {"faces", mesh.faces.size()},
-          {"volume", body.volume},
-          {"area", body.area},
-          {"centre_of_mass", json_of(body.centre_of_mass)},
-          {"bounding_box", {json_of(body.box.min), json_of(body.box.max)}},
-          {"brillouin_radius", body.brillouin_radius}};
+          {"density", part.density},
+          {"volume", part.volume},
+          {"mass", part.mass()},
+          {"centre_of_mass", json_of(part.centre_of_mass)}};
+}
+
+ordered_json json_of(const Body& body) {
+  const RawMesh& mesh = body.surface.mesh();
+  ordered_json json = {{"name", mesh.name},
+                       {"sha256", mesh.sha256},
+                       {"vertices", mesh.vertices.size()},
+                       {"faces", mesh.faces.size()},
+                       {"volume", body.volume},
+                       {"area", body.area},
+                       {"mass", body.mass()},
+                       {"centre_of_mass", json_of(body.centre_of_mass)}, // nulls where the parts' masses cancel
+                       {"bounding_box", {json_of(body.box.min), json_of(body.box.max)}},
+                       {"brillouin_radius", body.brillouin_radius},
+                       {"placement", {{"metres_per_unit", nullptr}, {"rotation", json_of(body.placement.rotation)}}}};
+  if (body.placement.metric) json["placement"]["metres_per_unit"] = body.placement.scale;
+  ordered_json parts = ordered_json::array();
+  for (const Part& part : body.parts) parts.push_back(json_of(part));
+  json["parts"] = parts;
+  return json;
 }
 
 ordered_json json_of(const Timings& t, const RunReport& run) {
@@ -87,6 +106,7 @@ void write_coefficients(const Coefficients& q, const Sink& sink) {
 }
 
 void write_mass(const ExpandResult& result, const Sink& sink) {
+  const bool metric = result.body.placement.metric;
   const ordered_json mass = {
       {"lmax", result.mass.lmax},
       {"origin", json_of(result.mass.origin)},
@@ -96,7 +116,8 @@ void write_mass(const ExpandResult& result, const Sink& sink) {
       {"condon_shortley", true},
       {"conjugated", false},
       {"axes", "the mesh's; theta from +z, phi from +x towards +y"},
-      {"units", "density * length^3, in the mesh's length unit; Q_lm = value * reference_radius^l"},
+      {"units", std::string(metric ? "kg, lengths in metres" : "density * length^3, in the mesh's length unit") +
+                    "; Q_lm = value * reference_radius^l"},
       {"density", result.mass.density},
       {"cut_off", result.cut_off}};
   sink("\"mass\": " + json_members(mass) + ",\n \"coefficients\": [");
@@ -111,21 +132,22 @@ std::uint64_t json_bytes(int lmax) {
 }
 
 void write_json(const ExpandResult& result, const Sink& sink) {
-  const ordered_json head = {{"schema", "cowgpu.result.v1"},
-                             {"program", program_json()},
-                             {"command", result.command},
-                             {"created", result.created},
-                             {"mesh", json_of(result.body)},
-                             {"device", device_json(result.device)},
-                             {"notes", result.notes},
-                             {"tensors",
-                              {{"origin", json_of(result.body.origin)},
-                               {"units", "density * length^5, in the mesh's length unit"},
-                               {"quadrupole", json_of(result.tensors.quadrupole)},
-                               {"inertia", json_of(result.tensors.inertia)},
-                               {"second_moment", json_of(result.tensors.second_moment)}}},
-                             {"timings", json_of(result.timings, result.run)},
-                             {"accuracy", json_of(result.accuracy)}};
+  const ordered_json head = {
+      {"schema", "cowgpu.result.v1"},
+      {"program", program_json()},
+      {"command", result.command},
+      {"created", result.created},
+      {"mesh", json_of(result.body)},
+      {"device", device_json(result.device)},
+      {"notes", result.notes},
+      {"tensors",
+       {{"origin", json_of(result.body.origin)},
+        {"units", result.body.placement.metric ? "kg m^2" : "density * length^5, in the mesh's length unit"},
+        {"quadrupole", json_of(result.tensors.quadrupole)},
+        {"inertia", json_of(result.tensors.inertia)},
+        {"second_moment", json_of(result.tensors.second_moment)}}},
+      {"timings", json_of(result.timings, result.run)},
+      {"accuracy", json_of(result.accuracy)}};
   sink(json_members(head) + ",\n \"expansions\": {");
   if (result.has_mass) write_mass(result, sink);
   bool first = !result.has_mass;

@@ -69,10 +69,27 @@ void write_computed(const ExpandResult& result, const Sink& sink) {
       100 * std::min(1.0, result.run.elements / result.run.full_elements), result.cut_off));
 }
 
+void write_body(const Body& body, const Sink& sink) {
+  const bool metric = body.placement.metric;
+  sink(fmt::format("\nbody, in {}, density {:.17g}{}\n",
+                   metric ? "metres and kilograms" : "the mesh's length unit and axes", body.density,
+                   metric ? " kg/m3" : ""));
+  for (const Part& part : body.parts)
+    sink(fmt::format("  {:<26} density {:+.15g}, volume {:.15g}, mass {:.15g}\n", "part " + part.surface.mesh().name,
+                     part.density, part.volume, part.mass()));
+  sink(fmt::format("  {:<26} {:.15g}\n", body.parts.empty() ? "volume" : "volume without parts", body.volume));
+  sink(fmt::format("  {:<26} {:.15g}\n", body.parts.empty() ? "mass" : "mass, parts included", body.mass()));
+  sink(fmt::format("  {:<26} {:.15g}\n", "area", body.area));
+  sink(fmt::format("  {:<26} {}\n", "centre of mass",
+                   body.centre_of_mass.allFinite() ? vector_text(body.centre_of_mass) : "none: the masses cancel"));
+  sink(fmt::format("  {:<26} {} ({})\n", "origin", vector_text(body.origin), body.origin_kind));
+  sink(fmt::format("  {:<26} {:.15g}\n", "Brillouin radius R", body.brillouin_radius));
+}
+
 void write_leading(const ExpandResult& result, const Sink& sink) {
-  sink("\nleading mass multipoles Q_lm = integral of density r^l Y_lm about the origin: raw (not divided by R^l), in "
-       "mesh "
-       "units,\nnot conjugated; Y_lm orthonormal with the Condon-Shortley phase, polar axis z; Q_l,-m = (-1)^m conj "
+  sink("\nleading mass multipoles Q_lm = integral of density r^l Y_lm about the origin: raw (not divided by R^l), in ");
+  sink(result.body.placement.metric ? "kg m^l" : "mesh units");
+  sink(",\nnot conjugated; Y_lm orthonormal with the Condon-Shortley phase, polar axis z; Q_l,-m = (-1)^m conj "
        "Q_lm\n");
   write_table(result.mass, sink);
 }
@@ -90,14 +107,7 @@ void write_screen(const ExpandResult& result, const Sink& sink) {
       "time: load {:.3f} s, device {:.3f} s, moments {:.3f} s, check {:.3f} s, surfaces {:.3f} s, in all {:.3f} s\n",
       t.load, t.device, t.moments, t.verify, t.surfaces, t.total));
 
-  sink(fmt::format("\nbody, in the mesh's length unit and axes, density {:.17g}\n", result.body.density));
-  sink(fmt::format("  {:<26} {:.15g}\n", "volume", result.body.volume));
-  sink(fmt::format("  {:<26} {:.15g}\n", "mass", result.body.mass()));
-  sink(fmt::format("  {:<26} {:.15g}\n", "area", result.body.area));
-  sink(fmt::format("  {:<26} {}\n", "centre of mass", vector_text(result.body.centre_of_mass)));
-  sink(fmt::format("  {:<26} {} ({})\n", "origin", vector_text(result.body.origin), result.body.origin_kind));
-  sink(fmt::format("  {:<26} {:.15g}\n", "Brillouin radius R", result.body.brillouin_radius));
-
+  write_body(result.body, sink);
   if (result.has_mass) write_leading(result, sink);
   sink("\ntensors about the origin\n");
   write_matrix("quadrupole 3 x x - r^2", result.tensors.quadrupole, sink);

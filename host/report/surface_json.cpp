@@ -4,6 +4,7 @@
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/paper_tables.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace cowgpu {
@@ -78,7 +79,8 @@ void write_surface_json(const SurfaceResult& result, const std::function<void(st
       {"normalisation", "orthonormal"},
       {"condon_shortley", true},
       {"axes", "the mesh's; theta from +z, phi from +x towards +y"},
-      {"units", "f_r, x, y, z in the mesh's length unit, f_dtheta and f_dphi in radians; x, y, z in mesh coordinates"},
+      {"units", fmt::format("f_r, x, y, z in {}, f_dtheta and f_dphi in radians; x, y, z in mesh coordinates",
+                            result.length_unit)},
       {"dphi", expansion.signed_dphi ? "signed" : "absolute"},
       {"map", map_json(result)},
       {"grid",

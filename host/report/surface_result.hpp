@@ -21,6 +21,7 @@ struct SurfaceResult {
   std::string map_file, map_sha256; ///< the file that the map was read from (method "file"), or empty
   std::string recipe;               ///< "default" or "paper"
   std::string origin_kind;          ///< as in Body
+  std::string length_unit = "the mesh's length unit";
   bool closest_point = false;
   bool beside_paper = false; ///< the paper's recipe on the paper's mesh, to degree 3 at least, with aliasing estimated
   SurfaceExpansion expansion;

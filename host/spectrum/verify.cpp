@@ -39,16 +39,54 @@ bool Accuracy::passed() const {
   return worst() && worst()->errors.weighed <= bound;
 }
 
-MomentProblem mass_problem(const Body& body, int lmax, double cut_off) {
-  MomentProblem problem;
-  problem.vertices = body.surface.vertices();
-  problem.faces = body.surface.faces();
-  problem.origin = body.origin;
-  problem.reference_radius = body.brillouin_radius;
-  problem.density = body.density;
-  problem.lmax = lmax;
-  problem.cut_off = cut_off;
-  return problem;
+std::vector<MomentProblem> mass_problems(const Body& body, int lmax, double cut_off) {
+  std::vector<MomentProblem> problems;
+  const auto add = [&](const ClosedSurface& surface, double density) {
+    MomentProblem problem;
+    problem.vertices = surface.vertices();
+    problem.faces = surface.faces();
+    problem.origin = body.origin;
+    problem.reference_radius = body.brillouin_radius;
+    problem.density = density;
+    problem.lmax = lmax;
+    problem.cut_off = cut_off;
+    problems.push_back(problem);
+  };
+  add(body.surface, body.density);
+  for (const Part& part : body.parts) add(part.surface, part.density);
+  return problems;
+}
+
+std::vector<double> degree_bound(std::span<const MomentProblem> problems) {
+  std::vector<double> sum;
+  for (const MomentProblem& problem : problems) {
+    const std::vector<double> bound = plan::degree_bound(problem);
+    sum.resize(bound.size());
+    for (std::size_t l = 0; l < bound.size(); ++l) sum[l] += bound[l];
+  }
+  return sum;
+}
+
+Coefficients mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor,
+                          RunReport* report) {
+  Coefficients sum;
+  RunReport runs;
+  for (const MomentProblem& problem : problems) {
+    RunReport run;
+    Coefficients q = backend.moments(problem, monitor, &run);
+    if (&problem == problems.data())
+      sum = std::move(q);
+    else
+      for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += q.values[i];
+    runs.seconds += run.seconds;
+    runs.setup_seconds += run.setup_seconds;
+    runs.elements += run.elements;
+    runs.full_elements += run.full_elements;
+    runs.pairs += run.pairs;
+    runs.kernels.insert(runs.kernels.end(), run.kernels.begin(), run.kernels.end());
+  }
+  if (report) *report = std::move(runs);
+  return sum;
 }
 
 Agreement compare_with_tensors(const Body& body, const Coefficients& q) {
@@ -65,8 +103,8 @@ Agreement compare_with_tensors(const Body& body, const Coefficients& q) {
     expected.values[Coefficients::index(2, 2)] =
         std::sqrt(5 / (96 * pi)) * std::complex(t(0, 0) - t(1, 1), 2 * t(0, 1));
   }
-  const MomentProblem problem = mass_problem(body, ours.lmax, 0);
-  return {"degrees 0 and 2", "mass and quadrupole tensor", compare(ours, expected, plan::degree_bound(problem))};
+  return {"degrees 0 and 2", "mass and quadrupole tensor",
+          compare(ours, expected, degree_bound(mass_problems(body, ours.lmax, 0)))};
 }
 
 std::uint64_t verify_bytes(const MomentProblem& problem, const Backend& backend, Verify how) {
@@ -106,6 +144,24 @@ Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify h
     accuracy.agreements.push_back({"CPU path", "reference in extended precision", compare(done, other, bound)});
   }
   return accuracy;
+}
+
+Accuracy verify_all(std::span<const MomentProblem> problems, Backend& backend, Verify how, std::uint64_t seed,
+                    Monitor& monitor) {
+  Accuracy all;
+  for (const MomentProblem& problem : problems) {
+    Accuracy one = verify_moments(problem, backend, how, seed, monitor);
+    if (&problem == problems.data()) {
+      all = std::move(one);
+      continue;
+    }
+    all.triangles += one.triangles;
+    // Of the same paths each time, in the same order.
+    for (std::size_t i = 0; i < one.agreements.size(); ++i)
+      if (!(one.agreements[i].errors.weighed <= all.agreements[i].errors.weighed))
+        all.agreements[i] = one.agreements[i];
+  }
+  return all;
 }
 
 } // namespace cowgpu

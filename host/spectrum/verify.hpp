@@ -6,6 +6,7 @@
 #include "host/spectrum/compare.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,16 @@ struct Accuracy {
   bool passed() const; ///< something was compared, and every weighed error is within the bound; NaN fails
 };
 
-/// The problem of a body's mass moments. It refers to the body.
-MomentProblem mass_problem(const Body& body, int lmax, double cut_off);
+/// The problems of a body's mass moments: that of its surface, then those of its parts, all about the body's origin and
+/// with its Brillouin radius. They refer to the body.
+std::vector<MomentProblem> mass_problems(const Body& body, int lmax, double cut_off);
+
+/// B_l of plan::degree_bound(), summed over the problems.
+std::vector<double> degree_bound(std::span<const MomentProblem> problems);
+
+/// The sum of the problems' moments; `report` sums up what the backend reports.
+Coefficients mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor,
+                          RunReport* report = nullptr);
 
 /// Degrees 0 and 2 of `q` against the body's mass and Cartesian quadrupole tensor, which share no code with any path:
 /// Q_00 = M/sqrt(4 pi), Q_20 = sqrt(5/pi)/4 T_zz, Q_21 = -sqrt(5/24pi) (T_xz + i T_yz), Q_22 = sqrt(5/96pi) (T_xx - T_yy +
@@ -48,5 +57,9 @@ std::uint64_t verify_bytes(const MomentProblem& problem, const Backend& backend,
 /// for the CPU path. Throws what the backends throw.
 Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify how, std::uint64_t seed,
                         Monitor& monitor);
+
+/// verify_moments() of each problem: triangles are counted over all, agreements are the worst of each pair of paths.
+Accuracy verify_all(std::span<const MomentProblem> problems, Backend& backend, Verify how, std::uint64_t seed,
+                    Monitor& monitor);
 
 } // namespace cowgpu

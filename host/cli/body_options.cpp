@@ -1,0 +1,146 @@
+#include "host/cli/body_options.hpp"
+
+#include "host/cli/commands.hpp"
+#include "host/error.hpp"
+#include "host/io/mesh_source.hpp"
+#include "host/spectrum/rotation.hpp"
+#include "host/units.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <numbers>
+
+namespace cowgpu::cli {
+namespace {
+
+Eigen::Matrix3d parse_rotation(const std::string& text) {
+  const auto angles = parse_point(text);
+  if (!angles)
+    throw Error(Fault::bad_argument,
+                fmt::format("--rotate {}: it takes three angles ALPHA,BETA,GAMMA in degrees, of the rotation "
+                            "R_z(ALPHA) R_y(BETA) R_z(GAMMA)",
+                            text));
+  const Vec3 turns = *angles / 180 * std::numbers::pi; // multiples of 90 degrees stay exact
+  return rotation_matrix({turns[0], turns[1], turns[2]});
+}
+
+Placement parse_placement(const BodyOptions& options) {
+  Placement placement;
+  if (!options.length_unit.empty()) {
+    // "mm" is one of them.
+    const bool bare = std::isalpha(static_cast<unsigned char>(options.length_unit.front())) != 0;
+    const Measure unit = parse_measure("--length-unit", (bare ? "1" : "") + options.length_unit, Dimension::length);
+    if (!unit.has_unit)
+      throw Error(
+          Fault::bad_argument,
+          fmt::format("--length-unit {0}: {0} of what? It is the length that 1 in the mesh's file stands for, such as "
+                      "mm or 2.3m",
+                      options.length_unit));
+    if (!(unit.value > 0))
+      throw Error(Fault::bad_argument, fmt::format("--length-unit {}: it must be above 0", options.length_unit));
+    placement.scale = unit.value;
+    placement.metric = true;
+  }
+  if (!options.axes.empty()) placement.rotation = axes_rotation(options.axes);
+  if (!options.rotate.empty()) placement.rotation = parse_rotation(options.rotate) * placement.rotation;
+  return placement;
+}
+
+double parse_density(std::string_view option, std::string_view text, bool metric) {
+  const Measure density = parse_measure(option, text, Dimension::density);
+  if (density.has_unit && !metric)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("{} {}: a density with a unit needs the mesh's: add --length-unit, the length that 1 in the "
+                    "mesh's file stands for, such as mm or 2.3m",
+                    option, text));
+  return density.value;
+}
+
+ClosedSurface load_placed(const std::string& name, const Placement& placement) {
+  RawMesh mesh = load_mesh(name);
+  place(mesh, placement);
+  return ClosedSurface::from(std::move(mesh));
+}
+
+struct PartChoice {
+  std::string mesh, density;
+};
+
+PartChoice parse_part(const std::string& text) {
+  const std::size_t sign = text.rfind('=');
+  if (sign == std::string::npos || sign == 0 || sign + 1 == text.size())
+    throw Error(Fault::bad_argument,
+                fmt::format("--part {}: it takes FILE=DENSITY, a mesh and what it adds to the density inside, such as "
+                            "rumen.off=300 or hole.off=-1000",
+                            text));
+  return {text.substr(0, sign), text.substr(sign + 1)};
+}
+
+Part load_part(const std::string& text, const Placement& placement) {
+  const PartChoice choice = parse_part(text);
+  const double density = parse_density("--part " + choice.mesh, choice.density, placement.metric);
+  try {
+    return Part(load_placed(choice.mesh, placement), density);
+  } catch (const Error& error) {
+    throw Error(error.fault(), fmt::format("--part {}: {}", text, error.what()));
+  }
+}
+
+} // namespace
+
+void add_body_options(CLI::App& command, BodyOptions& options) {
+  command.add_option("mesh", options.mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  command
+      .add_option("--origin", options.origin,
+                  "com (centre of mass, of the parts too), mesh, or X,Y,Z in the body's coordinates")
+      ->capture_default_str();
+  command
+      .add_option("--density", options.density,
+                  "Mass per cubed length unit of the mesh; with --length-unit in kg/m3, or with a unit: 2.7g/cm3")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--length-unit", options.length_unit,
+          "The length that 1 in the mesh's file stands for: mm, km, 2.3m ...; results are in metres and kilograms")
+      ->type_name("LENGTH");
+  command
+      .add_option("--axes", options.axes,
+                  "The mesh's axes that become x, y and z: x,-z,y for x' = x, y' = -z, z' = y (right-handed, exact)")
+      ->type_name("A,B,C");
+  command
+      .add_option("--rotate", options.rotate,
+                  "Then turn the body: R_z(ALPHA) R_y(BETA) R_z(GAMMA), degrees, about fixed axes, the rightmost first")
+      ->type_name("ALPHA,BETA,GAMMA");
+  command
+      .add_option("--part", options.parts,
+                  "A part FILE=DENSITY: inside it so much is added to the density (negative: a hole); can be repeated. "
+                  "Units, axes and attitude are those of MESH")
+      ->type_name("FILE=DENSITY")
+      ->allow_extra_args(false);
+}
+
+Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
+  const OriginChoice origin = parse_origin(options.origin);
+  const Placement placement = parse_placement(options);
+  const double density = parse_density("--density", options.density, placement.metric);
+  ClosedSurface surface = load_placed(options.mesh, placement);
+  notes.insert(notes.end(), surface.mesh().notes.begin(), surface.mesh().notes.end());
+  std::vector<Part> parts;
+  for (const std::string& text : options.parts) parts.push_back(load_part(text, placement));
+  for (const Part& part : parts)
+    for (const std::string& note : part.surface.mesh().notes)
+      notes.push_back(fmt::format("{}: {}", part.surface.mesh().name, note));
+  Body body = make_body(std::move(surface), origin, density, std::move(parts));
+  body.placement = placement;
+  return body;
+}
+
+std::vector<std::string> input_files(const BodyOptions& options) {
+  std::vector<std::string> files = {options.mesh};
+  for (const std::string& part : options.parts) files.push_back(parse_part(part).mesh);
+  return files;
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,33 @@
+// The options that turn a mesh into a body: unit, density, axes, attitude, origin, parts.
+#pragma once
+
+#include "host/mesh/body.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace cowgpu::cli {
+
+/// As typed.
+struct BodyOptions {
+  std::string mesh = "builtin:cow";
+  std::string origin = "com";
+  std::string density = "1";
+  std::string length_unit, axes, rotate;
+  std::vector<std::string> parts; ///< FILE=DENSITY each
+};
+
+/// Adds MESH, --origin, --density, --length-unit, --axes, --rotate and --part.
+void add_body_options(CLI::App& command, BodyOptions& options);
+
+/// Reads mesh and parts, places them and measures the body; sentences about what was done go to `notes`. Throws
+/// Error(bad_argument) for options that mean nothing or do not go together, and what load_mesh(), ClosedSurface::from() and
+/// make_body() throw; errors of a part begin with its name.
+Body load_body(const BodyOptions& options, std::vector<std::string>& notes);
+
+/// The files that are read, for refuse_same_file().
+std::vector<std::string> input_files(const BodyOptions& options);
+
+} // namespace cowgpu::cli

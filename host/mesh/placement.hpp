@@ -1,0 +1,28 @@
+// From the coordinates of a file to those of a body: unit, axes, attitude.
+#pragma once
+
+#include "host/mesh/raw_mesh.hpp"
+
+#include <Eigen/Core>
+
+namespace cowgpu {
+
+/// p -> rotation (scale p). The rotation is exact where it only names axes anew; any other rounds coordinates once.
+struct Placement {
+  double scale = 1;    ///< metres that one unit of the mesh is; 1 if not metric
+  bool metric = false; ///< whether lengths are metres, and densities kg/m3
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+
+  bool is_identity() const { return scale == 1 && rotation.isIdentity(0); }
+};
+
+/// Moves a mesh; its hash stays that of the file, and a note says what was done. Coordinates that leave the range of doubles
+/// become infinite, which ClosedSurface::from() refuses.
+void place(RawMesh& mesh, const Placement& placement);
+
+/// The rotation that makes the mesh's axes named by `text` the x, y and z axes: three of x, y, z, -x, -y, -z separated by
+/// commas, "x,-z,y" for new x = x, new y = -z, new z = y. Throws Error(bad_argument) for other words, an axis named twice,
+/// and axes of the other hand: they would make the body its mirror image.
+Eigen::Matrix3d axes_rotation(std::string_view text);
+
+} // namespace cowgpu

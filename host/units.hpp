@@ -1,0 +1,22 @@
+// Quantities with units, as the command line takes them.
+#pragma once
+
+#include <string_view>
+
+namespace cowgpu {
+
+/// What a quantity measures. Values are held in the SI unit: m, kg/m3.
+enum class Dimension { length, density };
+
+/// A number and whether a unit came with it.
+struct Measure {
+  double value = 0; ///< in the SI unit if has_unit, else as given
+  bool has_unit = false;
+};
+
+/// Reads "2.7g/cm3", "2.7 g/cm^3", "300kg/m3", "12 km", "1e-3": a finite number and, next to it or after blanks, a unit or
+/// none. Units of length: nm um mm cm m km in ft au R_earth (6371 km); of density: kg/m3 g/cm3 g/m3 kg/l g/l t/m3 lb/ft3.
+/// `option` opens the messages. Throws Error(bad_argument) with the units that there are.
+Measure parse_measure(std::string_view option, std::string_view text, Dimension dimension);
+
+} // namespace cowgpu
