@@ -115,10 +115,10 @@ void write_screen(const ReconstructReport& report, const Sink& sink) {
   sink(fmt::format("order 0: {}\n", describe_order(expansion, report.fields, 0)));
   sink("device: " + device_line(report.device) + "\n");
   sink(fmt::format("time: map and expansion {:.3f} s, in all {:.3f} s\n", report.source_seconds, report.total_seconds));
-  sink(fmt::format("the body by order, density 1, in the mesh's length unit; moments of inertia about the origin{}\n",
-                   report.body
-                       ? fmt::format("; distance between body and mesh, both ways, from {} points each", report.samples)
-                       : ""));
+  sink(fmt::format(
+      "the body by order, density 1, in the length unit of the expansion; moments of inertia about the origin{}\n",
+      report.body ? fmt::format("; distance between body and mesh, both ways, from {} points each", report.samples)
+                  : ""));
 
   std::size_t names = 4, places = 14, moments = 17;
   const int digits = coordinate_digits(2 * std::abs(spherical_radius(expansion)));
