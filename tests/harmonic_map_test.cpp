@@ -220,17 +220,17 @@ TEST_CASE("poles are found by number, by nearness and on the back", "[harmonic]"
 TEST_CASE("Moebius transformations are undone by their opposite and keep the sphere and its angles", "[moebius]") {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return Direction(normal(random), normal(random), normal(random)); };
+  const auto vector = [&] { return SpherePoint(normal(random), normal(random), normal(random)); };
   for (int i = 0; i < 200; ++i) {
-    const Direction x = vector().normalized(), c = 0.9L * (i / 200.0L) * vector().normalized();
-    const Direction y = moebius(x, c);
+    const SpherePoint x = vector().normalized(), c = 0.9L * (i / 200.0L) * vector().normalized();
+    const SpherePoint y = moebius(x, c);
     CHECK(double(std::abs(y.norm() - 1)) < 1e-18);
     CHECK(double((moebius(y, -c) - x).norm()) < 1e-16);
     // Small steps in two directions at right angles stay so, and of one length.
-    const Direction u = x.cross(vector()).normalized(), v = x.cross(u);
+    const SpherePoint u = x.cross(vector()).normalized(), v = x.cross(u);
     const long double h = 1e-7L;
-    const Direction du = (moebius((x + h * u).normalized(), c) - moebius((x - h * u).normalized(), c)) / (2 * h);
-    const Direction dv = (moebius((x + h * v).normalized(), c) - moebius((x - h * v).normalized(), c)) / (2 * h);
+    const SpherePoint du = (moebius((x + h * u).normalized(), c) - moebius((x - h * u).normalized(), c)) / (2 * h);
+    const SpherePoint dv = (moebius((x + h * v).normalized(), c) - moebius((x - h * v).normalized(), c)) / (2 * h);
     CHECK(double(std::abs(du.dot(dv)) / du.squaredNorm()) < 1e-8);
     CHECK(double(std::abs(du.norm() / dv.norm() - 1)) < 1e-8);
     CHECK(du.cross(dv).dot(y) * u.cross(v).dot(x) > 0);
@@ -240,23 +240,23 @@ TEST_CASE("Moebius transformations are undone by their opposite and keep the sph
 TEST_CASE("centring brings the mean to zero, and fails where half of the weight is at one point", "[moebius]") {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
-  std::vector<Direction> x(100);
+  std::vector<SpherePoint> x(100);
   const std::vector<double> weights(100, 0.01);
-  for (Direction& d : x) d = Direction(normal(random), normal(random), 20 + normal(random)).normalized();
+  for (SpherePoint& d : x) d = SpherePoint(normal(random), normal(random), 20 + normal(random)).normalized();
   x[5].setZero();
   CHECK(centre(x, weights) < 30);
-  Direction mean = Direction::Zero();
-  for (const Direction& d : x) mean += 0.01L * d;
+  SpherePoint mean = SpherePoint::Zero();
+  for (const SpherePoint& d : x) mean += 0.01L * d;
   CHECK(double(mean.norm()) < 1e-15);
-  CHECK(x[5] == Direction(0, 0, 0));
-  for (std::size_t i = 0; i < 60; ++i) x[i] = Direction(0, 0, 1);
+  CHECK(x[5] == SpherePoint(0, 0, 0));
+  for (std::size_t i = 0; i < 60; ++i) x[i] = SpherePoint(0, 0, 1);
   CHECK(fault_of([&] { centre(x, weights); }) == Fault::map_failed);
 }
 
 TEST_CASE("the plane is wrapped round the sphere without turning it over", "[moebius]") {
-  CHECK(inverse_stereographic({0, 0}) == Direction(0, 0, 1));
-  CHECK(inverse_stereographic({1, 0}) == Direction(1, 0, 0));
-  CHECK(inverse_stereographic({0, 1}) == Direction(0, 1, 0));
+  CHECK(inverse_stereographic({0, 0}) == SpherePoint(0, 0, 1));
+  CHECK(inverse_stereographic({1, 0}) == SpherePoint(1, 0, 0));
+  CHECK(inverse_stereographic({0, 1}) == SpherePoint(0, 1, 0));
   CHECK(double(inverse_stereographic({1e9L, 0}).z()) == Approx(-1));
 }
 

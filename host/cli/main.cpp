@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   cli::add_devices(app, common);
   cli::add_render(app, common);
   cli::add_bench(app, common);
+  cli::add_manual(app);
   try {
     app.parse(argc, argv);
     cli::flush_stdout();

@@ -183,11 +183,11 @@ SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& op
   check_stop(monitor);
   const double scale = options.disk_scale > 0 ? options.disk_scale : halving_scale(disk, areas, pole);
 
-  std::vector<Direction> x(disk.w.size(), Direction::Zero());
+  std::vector<SpherePoint> x(disk.w.size(), SpherePoint::Zero());
   for (std::uint32_t v = 0; v < x.size(); ++v)
     if (half_edges.leaving(v) != HalfEdges::none)
       x[v] = inverse_stereographic(std::complex<long double>(disk.w[v]) * static_cast<long double>(scale));
-  x[pole] = Direction(0, 0, -1);
+  x[pole] = SpherePoint(0, 0, -1);
 
   SphereMap map;
   map.method = "harmonic";

@@ -14,44 +14,44 @@ namespace {
 
 using Matrix = Eigen::Matrix<long double, 3, 3>;
 
-bool present(const Direction& x) {
+bool present(const SpherePoint& x) {
   return x.squaredNorm() > 0;
 }
 
-Direction weighted_mean(std::span<const Direction> x, std::span<const double> weights) {
-  Direction sum = Direction::Zero();
+SpherePoint weighted_mean(std::span<const SpherePoint> x, std::span<const double> weights) {
+  SpherePoint sum = SpherePoint::Zero();
   for (std::size_t i = 0; i < x.size(); ++i) sum += weights[i] * x[i];
   return sum;
 }
 
 } // namespace
 
-Direction inverse_stereographic(const std::complex<long double>& w) {
+SpherePoint inverse_stereographic(const std::complex<long double>& w) {
   const long double square = std::norm(w);
-  return Direction(2 * w.real(), 2 * w.imag(), 1 - square) / (1 + square);
+  return SpherePoint(2 * w.real(), 2 * w.imag(), 1 - square) / (1 + square);
 }
 
-Direction moebius(const Direction& x, const Direction& c) {
-  const Direction sum = x + c;
+SpherePoint moebius(const SpherePoint& x, const SpherePoint& c) {
+  const SpherePoint sum = x + c;
   return ((1 - c.squaredNorm()) / sum.squaredNorm() * sum + c).normalized();
 }
 
-int centre(std::span<Direction> x, std::span<const double> weights) {
+int centre(std::span<SpherePoint> x, std::span<const double> weights) {
   constexpr long double rounding = 1e-17L, wanted = 1e-14L;
-  Direction mean = weighted_mean(x, weights);
-  std::vector<Direction> moved(x.size());
+  SpherePoint mean = weighted_mean(x, weights);
+  std::vector<SpherePoint> moved(x.size());
   int steps = 0;
   for (; steps < 200 && mean.norm() > rounding; ++steps) {
     Matrix derivative = Matrix::Zero();
     for (std::size_t i = 0; i < x.size(); ++i)
       if (present(x[i])) derivative += 2 * weights[i] * (Matrix::Identity() - x[i] * x[i].transpose());
-    Direction c = -derivative.inverse() * mean;
+    SpherePoint c = -derivative.inverse() * mean;
     if (!(c.norm() <= 0.9L)) c = -0.9L * mean.normalized();
     // Shorter until the mean falls; near the end only rounding is left of it.
     bool fell = false;
     for (; !fell && c.norm() > rounding; c /= 2) {
       for (std::size_t i = 0; i < x.size(); ++i) moved[i] = present(x[i]) ? moebius(x[i], c) : x[i];
-      const Direction now = weighted_mean(moved, weights);
+      const SpherePoint now = weighted_mean(moved, weights);
       fell = now.norm() < mean.norm();
       if (fell) {
         std::copy(moved.begin(), moved.end(), x.begin());
@@ -69,7 +69,7 @@ int centre(std::span<Direction> x, std::span<const double> weights) {
   return steps;
 }
 
-Eigen::Matrix3d align(std::span<Direction> x, std::span<const double> weights, std::span<const Vec3> vertices) {
+Eigen::Matrix3d align(std::span<SpherePoint> x, std::span<const double> weights, std::span<const Vec3> vertices) {
   Vec3 middle = Vec3::Zero();
   for (std::size_t i = 0; i < x.size(); ++i) middle += weights[i] * vertices[i];
   double size = 0;
@@ -82,12 +82,12 @@ Eigen::Matrix3d align(std::span<Direction> x, std::span<const double> weights, s
   const Eigen::Matrix3d &u = svd.matrixU(), &v = svd.matrixV();
   const Eigen::Matrix3d rotation = v * Vec3(1, 1, (v * u.transpose()).determinant()).asDiagonal() * u.transpose();
   const Matrix extended = rotation.cast<long double>();
-  for (Direction& direction : x)
+  for (SpherePoint& direction : x)
     if (present(direction)) direction = (extended * direction).normalized();
   return rotation;
 }
 
-std::vector<Vec3> rounded(std::span<const Direction> x) {
+std::vector<Vec3> rounded(std::span<const SpherePoint> x) {
   std::vector<Vec3> result(x.size());
   for (std::size_t i = 0; i < x.size(); ++i)
     result[i] = present(x[i]) ? Vec3(x[i].normalized().cast<double>()) : Vec3(Vec3::Zero());

@@ -15,7 +15,7 @@ namespace cowgpu {
 
 namespace {
 
-Eigen::MatrixXd as_matrix(std::span<const Direction> x) {
+Eigen::MatrixXd as_matrix(std::span<const SpherePoint> x) {
   Eigen::MatrixXd matrix(Eigen::Index(x.size()), 3);
   for (std::size_t i = 0; i < x.size(); ++i) matrix.row(Eigen::Index(i)) = x[i].cast<double>();
   return matrix;
@@ -67,7 +67,7 @@ double inner(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 } // namespace
 
 PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, std::span<const double> areas,
-                    std::span<Direction> x, Monitor& monitor, int most_steps) {
+                    std::span<SpherePoint> x, Monitor& monitor, int most_steps) {
   constexpr double wanted = 1e-26, acceptable = 1e-12, longest = 1.2;
   SparseMatrix metric = laplace;
   for (Eigen::Index i = 0; i < metric.cols(); ++i) {
@@ -84,7 +84,7 @@ PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, st
   const Eigen::MatrixXd start = as_matrix(x), pull = laplace * start;
   PolishReport report;
   report.energy = report.energy_before = inner(start, pull) / 2;
-  std::vector<Direction> moved(x.size());
+  std::vector<SpherePoint> moved(x.size());
   Eigen::MatrixXd left = imbalance(start, pull, faces), direction = solver.solve(left, Refinement::none);
   report.decrement = inner(left, direction) / report.energy;
   double length = longest;

@@ -29,6 +29,6 @@ struct PolishReport {
 /// `laplace` must be symmetric, `areas` as from vertex_areas. Throws Error(map_failed) if the decrement stays above
 /// 1e-12, interrupted, and what centre() and SymmetricSolver throw.
 PolishReport polish(const SparseMatrix& laplace, std::span<const Face> faces, std::span<const double> areas,
-                    std::span<Direction> x, Monitor& monitor = silent_monitor(), int most_steps = 400);
+                    std::span<SpherePoint> x, Monitor& monitor = silent_monitor(), int most_steps = 400);
 
 } // namespace cowgpu

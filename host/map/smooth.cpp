@@ -150,10 +150,10 @@ SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& option
                             "take the stretch map, or the harmonic one",
                             steps, moved / now.mean, options.settled, now.deviation, options.roundness));
 
-  std::vector<Direction> directions(surface.vertices().size(), Direction::Zero());
+  std::vector<SpherePoint> directions(surface.vertices().size(), SpherePoint::Zero());
   for (std::uint32_t v = 0; v < directions.size(); ++v)
     if (half_edges.leaving(v) != HalfEdges::none)
-      directions[v] = Direction(x.row(v).transpose().cast<long double>()).normalized();
+      directions[v] = SpherePoint(x.row(v).transpose().cast<long double>()).normalized();
   SphereMap map;
   map.method = "smooth";
   map.notes.push_back(fmt::format("mean-curvature flow settled in {} steps (the last moved {:.1e}) to a sphere whose "

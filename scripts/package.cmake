@@ -1,0 +1,79 @@
+# What is installed, and the Debian packages: cowgpu (the program), libcowgpu0 (the library) and libcowgpu-dev.
+#   cmake --install build/release --prefix DIR          everything
+#   (cd build/release && cpack)                         build/release/packages/*.deb
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# The library: engine and host as one shared object. The program has them inside.
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/libcowgpu.cpp CONTENT "// Whole archives are all there is.\n")
+add_library(libcowgpu SHARED ${PROJECT_BINARY_DIR}/generated/libcowgpu.cpp)
+target_link_libraries(libcowgpu
+  PUBLIC Eigen3::Eigen
+  PRIVATE cowgpu_host cowgpu_engine)
+target_include_directories(libcowgpu INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/cowgpu>)
+target_compile_features(libcowgpu INTERFACE cxx_std_20)
+set_target_properties(libcowgpu PROPERTIES
+  LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,cowgpu_host,cowgpu_engine"
+  OUTPUT_NAME cowgpu EXPORT_NAME cowgpu VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+
+# Man page and completion, from the option table.
+add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/generated/cowgpu.1 ${PROJECT_BINARY_DIR}/generated/cowgpu.bash
+  COMMAND cowgpu man > ${PROJECT_BINARY_DIR}/generated/cowgpu.1
+  COMMAND cowgpu completion > ${PROJECT_BINARY_DIR}/generated/cowgpu.bash
+  DEPENDS cowgpu VERBATIM)
+add_custom_target(cowgpu_manual ALL
+  DEPENDS ${PROJECT_BINARY_DIR}/generated/cowgpu.1 ${PROJECT_BINARY_DIR}/generated/cowgpu.bash)
+
+install(TARGETS cowgpu RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+install(FILES ${PROJECT_BINARY_DIR}/generated/cowgpu.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES ${PROJECT_BINARY_DIR}/generated/cowgpu.bash RENAME cowgpu
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/meshes ${PROJECT_SOURCE_DIR}/data/schemas
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/cowgpu COMPONENT program FILES_MATCHING PATTERN "*.md" PATTERN "*.json")
+
+install(TARGETS libcowgpu EXPORT cowgpu-targets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
+# Headers of what a caller uses; those of single paths and of third libraries stay inside.
+foreach(folder "" mesh/ map/ spectrum/ flow/ io/)
+  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${folder}*.hpp)
+  list(FILTER headers EXCLUDE REGEX "/(flush_denormals|netcdf|quarter_turn|result_json|tinygltf|version)\\.hpp$")
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/${folder} COMPONENT development)
+endforeach()
+install(FILES ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # DirectionSynthesis holds one
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/plan COMPONENT development)
+install(EXPORT cowgpu-targets NAMESPACE cowgpu:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/cowgpu COMPONENT development)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/cowgpu-config.cmake CONTENT [[
+include(CMakeFindDependencyMacro)
+find_dependency(Eigen3 3.4)
+include(${CMAKE_CURRENT_LIST_DIR}/cowgpu-targets.cmake)
+]] @ONLY)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/generated/cowgpu-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/generated/cowgpu-config.cmake ${PROJECT_BINARY_DIR}/generated/cowgpu-config-version.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/cowgpu COMPONENT development)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_COMPONENTS_ALL program library development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_PACKAGE_CONTACT "The cowgpu authors <cowgpu@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME cowgpu)
+# Opened at run time, so that the program explains itself without them.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libcowgpu${PROJECT_VERSION_MAJOR})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/generated/triggers)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/triggers CONTENT "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcowgpu-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "libcowgpu${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION}), libeigen3-dev")
+include(CPack)
