@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "the reader copies mem
 using Json = nlohmann::json;
 
 constexpr std::size_t deepest_node = 1000;
-constexpr std::uint64_t spare_bytes = std::uint64_t{48} << 20; // of the mesh, beyond 4 times the file
+constexpr std::uint64_t spare_bytes = std::uint64_t{32} << 20; // of the mesh, beyond 4 times the file
 
 enum Mode : std::uint64_t { triangles = 4, strip = 5, fan = 6 };
 
@@ -48,7 +48,7 @@ public:
 
   RawMesh read() {
     walk(roots());
-    if (!closed_ && !is_balanced(mesh_.faces, mesh_.vertices.size())) weld(mesh_);
+    if (!closed_ && !seems_balanced(mesh_.faces)) weld(mesh_);
     notes();
     return std::move(mesh_);
   }
@@ -156,9 +156,14 @@ private:
       ++mirrored_;
       for (Face& f : part.faces) std::swap(f[1], f[2]);
     }
-    if (!is_balanced(part.faces, part.vertices.size())) {
+    if (!seems_balanced(part.faces)) {
       weld(part);
-      closed_ = closed_ && is_balanced(part.faces, part.vertices.size());
+      closed_ = closed_ && seems_balanced(part.faces);
+    }
+    if (mesh_.vertices.empty()) {
+      mesh_.vertices = std::move(part.vertices);
+      mesh_.faces = std::move(part.faces);
+      return;
     }
     const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
     mesh_.vertices.insert(mesh_.vertices.end(), part.vertices.begin(), part.vertices.end());

@@ -29,7 +29,8 @@ namespace cowgpu {
 ///
 /// Fills every field of RawMesh but `face_lines`; `sha256` is that of `bytes`. Every index is valid on return.
 ///
-/// Memory: below 64 MiB plus 4 times the file; instances that would take more are refused.
+/// Memory: of the mesh at most 32 MiB plus 4 times the file (instances that would take more are refused), and half as much
+/// while it grows from several meshes.
 ///
 /// Throws Error with
 /// - file_format: no glTF 2; points or lines; sparse accessors; positions that are not floats (KHR_mesh_quantization);

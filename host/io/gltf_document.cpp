@@ -14,15 +14,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int deepest = 100;
+constexpr std::size_t deepest = 100;
 constexpr std::size_t most_values = std::size_t{1} << 18,
                       bytes_per_value = 32; // a value takes up to 110 bytes of memory
 constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 const char* const whole_file = "the file";
 
 // What no shape depends on, by name.
-constexpr std::string_view left_out[] = {"animations", "asset_extras", "cameras", "extras",   "images",  "materials",
-                                         "max",        "min",          "name",    "samplers", "textures"};
+constexpr std::string_view left_out[] = {"animations", "cameras", "extras", "images",   "materials",
+                                         "max",        "min",     "name",   "samplers", "textures"};
 // Extensions that leave shapes alone, by the beginning of their names.
 constexpr std::string_view harmless[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_",
                                          "EXT_lights_",    "KHR_xmp",      "MSFT_texture_"};
@@ -33,37 +33,85 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-/// Watches a JSON text being parsed: stops what is too deep or too much, drops what is not needed.
-class Filter {
+/// Builds the JSON while it is parsed: stops what is too deep or too much, drops what is not needed. (The parser's own
+/// filter looks at all elements of an array at the end of each.)
+class Builder : public nlohmann::json_sax<Json> {
 public:
-  Filter(const GltfDocument& document, std::size_t most) : document_(document), most_(most) {}
+  Builder(const GltfDocument& document, std::string_view text, bool alone, std::size_t most)
+      : document_(document), text_(text), alone_(alone), most_(most) {}
 
-  bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
-    using Event = Json::parse_event_t;
-    if (dropping_ && depth <= drop_depth_ && (event == Event::key || event == Event::object_end)) dropping_ = false;
-    if (depth > deepest)
+  Json take() { return std::move(root_); }
+
+  bool null() override { return value(nullptr); }
+  bool boolean(bool x) override { return value(x); }
+  bool number_integer(number_integer_t x) override { return value(x); }
+  bool number_unsigned(number_unsigned_t x) override { return value(x); }
+  bool number_float(number_float_t x, const string_t&) override { return value(x); }
+  bool string(string_t& x) override { return value(std::move(x)); }
+  bool binary(binary_t&) override { return true; } // not in texts
+  bool start_object(std::size_t) override { return start(Json::object()); }
+  bool start_array(std::size_t) override { return start(Json::array()); }
+  bool end_object() override { return end(); }
+  bool end_array() override { return end(); }
+
+  bool key(string_t& key) override {
+    if (drop_depth_ != 0) return true;
+    drop_next_ = std::find(std::begin(left_out), std::end(left_out), key) != std::end(left_out);
+    key_ = std::move(key);
+    return true;
+  }
+
+  bool parse_error(std::size_t position, const std::string&, const Json::exception&) override {
+    document_.fail(alone_ && position > text_.size() ? Fault::file_truncated : Fault::file_syntax,
+                   fmt::format("byte {} of the JSON", position),
+                   "this is no JSON, or a number beyond double precision. Fetch or export it again.");
+  }
+
+private:
+  bool value(Json x) {
+    if (drop_depth_ == 0 && !drop_next_) place(std::move(x));
+    drop_next_ = false;
+    return true;
+  }
+
+  bool start(Json empty) {
+    if (++depth_ > deepest)
       document_.fail(Fault::file_syntax, whole_file, fmt::format("the JSON is nested more than {} deep.", deepest));
-    if (event == Event::key) {
-      if (dropping_) return true;
-      const auto& key = parsed.get_ref<const std::string&>();
-      dropping_ = std::find(std::begin(left_out), std::end(left_out), key) != std::end(left_out);
-      drop_depth_ = depth;
-      return !dropping_;
-    }
-    const bool begins = event == Event::value || event == Event::object_start || event == Event::array_start;
-    if (begins && !(dropping_ && depth > drop_depth_) && ++values_ > most_)
+    if (drop_next_) drop_depth_ = depth_;
+    drop_next_ = false;
+    if (drop_depth_ == 0) open_.push_back(place(std::move(empty)));
+    return true;
+  }
+
+  bool end() {
+    if (drop_depth_ == 0) open_.pop_back();
+    if (drop_depth_ == depth_) drop_depth_ = 0;
+    --depth_;
+    return true;
+  }
+
+  Json* place(Json x) {
+    if (++values_ > most_)
       document_.fail(Fault::too_large, whole_file,
                      fmt::format("the JSON has more than {} values beside names and materials. Join the meshes and "
                                  "nodes, or export the body as PLY.",
                                  most_));
-    return true;
+    if (open_.empty()) return &(root_ = std::move(x));
+    Json& parent = *open_.back();
+    if (parent.is_object()) return &(parent[key_] = std::move(x));
+    parent.push_back(std::move(x));
+    return &parent.back();
   }
 
-private:
   const GltfDocument& document_;
-  std::size_t most_, values_ = 0;
-  bool dropping_ = false;
-  int drop_depth_ = 0;
+  std::string_view text_;
+  const bool alone_; // not in a GLB
+  const std::size_t most_;
+  std::size_t values_ = 0, depth_ = 0, drop_depth_ = 0; // drop_depth_: of what is being dropped, 0 for nothing
+  bool drop_next_ = false;
+  std::string key_;
+  std::vector<Json*> open_; // innermost last; only the last one grows, so that they stay where they are
+  Json root_;
 };
 
 /// Nothing if the text is no base64.
@@ -146,15 +194,9 @@ std::string_view GltfDocument::container(std::string_view bytes) {
 }
 
 void GltfDocument::parse(std::string_view text, std::size_t file_size) {
-  Filter filter(*this, most_values + file_size / bytes_per_value);
-  try {
-    root_ = Json::parse(text.begin(), text.end(), std::ref(filter));
-  } catch (const Json::parse_error& error) {
-    fail(error.byte >= text.size() && text.size() == file_size ? Fault::file_truncated : Fault::file_syntax,
-         fmt::format("byte {} of the JSON", error.byte), "this is no JSON. Fetch or export it again.");
-  } catch (const Json::exception&) {
-    fail(Fault::file_syntax, whole_file, "the JSON holds a number beyond double precision, or text that is no UTF-8.");
-  }
+  Builder builder(*this, text, text.size() == file_size, most_values + file_size / bytes_per_value);
+  Json::sax_parse(text.begin(), text.end(), &builder); // the builder throws where it fails
+  root_ = builder.take();
 }
 
 void GltfDocument::require_known_extensions() const {
@@ -166,7 +208,7 @@ void GltfDocument::require_known_extensions() const {
       fail(Fault::file_format, whole_file,
            fmt::format("it requires the extension {}, which is not read. Export it without (no compression, no "
                        "quantization).",
-                       shown(text)));
+                       shown(text, 60)));
   }
 }
 
@@ -228,7 +270,7 @@ std::string_view GltfDocument::buffer(std::uint64_t index, const std::string& wh
       if (!text.starts_with("data:"))
         fail(Fault::file_format, self,
              fmt::format("it lies in another file ('{}'), and other files are not opened. Pack all into one GLB.",
-                         shown(text)));
+                         shown(text, 60)));
       constexpr std::string_view mark = ";base64,";
       const std::size_t at = text.substr(0, 200).find(mark);
       if (at == std::string_view::npos) fail(Fault::file_format, self, "its data: URI is not base64.");

@@ -113,14 +113,17 @@ private:
     }
   }
 
-  void require(const WordScanner& scan, std::string_view word, std::string_view expected) const {
-    if (same_word(word, expected)) return;
+  [[noreturn]] void unexpected(const WordScanner& scan, std::string_view word, std::string_view expected) const {
     if (word.empty() || scan.left() == 0)
       fail(Fault::file_truncated, scan.line(),
-           fmt::format("the file ends after {} facets, before the word {}. It was cut off; fetch or export it again.",
-                       facets_, expected));
+           fmt::format("the file ends after {} facets, before {}. It was cut off; fetch or export it again.", facets_,
+                       expected));
     fail(Fault::file_syntax, scan.line(),
-         fmt::format("the word {} expected after {} facets, found '{}'.", expected, facets_, shown(word)));
+         fmt::format("{} expected after {} facets, found '{}'.", expected, facets_, shown(word)));
+  }
+
+  void require(const WordScanner& scan, std::string_view word, std::string_view expected) const {
+    if (!same_word(word, expected)) unexpected(scan, word, fmt::format("'{}'", expected));
   }
   void require(WordScanner& scan, std::string_view expected) const { require(scan, scan.word(), expected); }
 
@@ -163,9 +166,7 @@ private:
     for (int c = 0; c < 3; ++c) {
       const std::string_view word = scan.word();
       const auto value = to_number(word);
-      if (word.empty() || (!value && (strict || same_word(word, "outer"))))
-        fail(word.empty() || scan.left() == 0 ? Fault::file_truncated : Fault::file_syntax, scan.line(),
-             fmt::format("a number of facet {} expected, found '{}'.", facets_, shown(word)));
+      if (word.empty() || (!value && (strict || same_word(word, "outer")))) unexpected(scan, word, "a number");
       v[c] = value.value_or(0);
     }
     return v;

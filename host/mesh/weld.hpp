@@ -35,7 +35,8 @@ struct Weld {
 /// Indices must be valid.
 Weld weld_equal_points(RawMesh& mesh);
 
-/// Whether every directed edge occurs as often as its reverse. Indices must be valid.
-bool is_balanced(std::span<const Face> faces, std::size_t vertex_count);
+/// True if every directed edge occurs as often as its reverse; by a sum of hashes that cancel, without memory. False for
+/// all other faces but those whose hashes cancel by chance (one in 2^64), which ClosedSurface then refuses.
+bool seems_balanced(std::span<const Face> faces);
 
 } // namespace cowgpu
