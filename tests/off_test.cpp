@@ -1,31 +1,22 @@
 #include "host/io/off.hpp"
 
 #include "host/error.hpp"
-#include "host/io/file.hpp"
 #include "host/io/sha256.hpp"
-#include "host/mesh/audit.hpp"
+#include "tests/support/reader_checks.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <filesystem>
 #include <functional>
-#include <random>
 #include <sys/resource.h>
 
 using namespace cowgpu;
-namespace fs = std::filesystem;
+using test::replaced;
 
 namespace {
 
-/// The name of the fault that `work` ends with, or "none".
 std::string fault_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return std::string(name(error.fault()));
-  }
-  return "none";
+  return test::outcome_of(work).fault;
 }
 
 std::string message_of(const std::string& text) {
@@ -37,91 +28,15 @@ std::string message_of(const std::string& text) {
   return "";
 }
 
-std::vector<fs::path> corpus(const std::string& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(COWGPU_CORPUS) / folder))
-    if (entry.path().extension() == ".off") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 const std::string tetrahedron = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  return text.replace(text.find(what), what.size(), by);
-}
-
 } // namespace
-
-TEST_CASE("every refused file of the corpus fails as its name says", "[off]") {
-  const auto files = corpus("refused");
-  REQUIRE(files.size() >= 20);
-  for (const fs::path& file : files) {
-    const std::string stem = file.stem().string(), expected = stem.substr(0, stem.find("--"));
-    INFO(file.filename());
-    CHECK(fault_of([&] {
-            ClosedSurface closed = ClosedSurface::from(parse_off(read_file(file), "x.off"));
-            ManifoldSurface::from(std::move(closed));
-          }) == expected);
-    // What maps refuse is good enough for volumes.
-    if (expected.ends_with("-manifold"))
-      CHECK(fault_of([&] { ClosedSurface::from(parse_off(read_file(file), "x.off")); }) == "none");
-  }
-}
-
-TEST_CASE("every accepted file of the corpus has the volume its first comment says", "[off]") {
-  const auto files = corpus("accepted");
-  REQUIRE(files.size() >= 15);
-  for (const fs::path& file : files) {
-    INFO(file.filename());
-    const std::string text = read_file(file), mark = "# volume ";
-    const std::size_t at = text.find(mark);
-    REQUIRE(at <= 3);
-    const double expected = std::stod(text.substr(at + mark.size()));
-    const ClosedSurface surface = ClosedSurface::from(parse_off(text, file.filename()));
-    CHECK(std::fabs(volume(surface) - expected) <= 4 * 0x1p-53 * expected);
-    const Audit facts = audit(surface.mesh());
-    CHECK((facts.closed && facts.consistently_oriented && facts.finite && facts.outward));
-    CHECK(facts.volume == volume(surface));
-  }
-}
-
-TEST_CASE("every prefix of an accepted file parses or is refused by name", "[off]") {
-  for (const fs::path& file : corpus("accepted")) {
-    INFO(file.filename());
-    const std::string text = read_file(file);
-    for (std::size_t size = 0; size < text.size(); ++size) {
-      // A copy of just that size lets the address sanitizer see reads beyond its end.
-      const std::vector<char> prefix(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(size));
-      CHECK_NOTHROW(fault_of([&] { parse_off({prefix.data(), prefix.size()}, "x.off"); }));
-    }
-  }
-}
 
 TEST_CASE("prefixes that lack a face are truncated", "[off]") {
   const std::size_t last_face = tetrahedron.rfind("3 0 3 2");
   for (std::size_t size = 4; size < last_face + 6; ++size) {
     INFO(size);
     CHECK(fault_of([&] { parse_off(tetrahedron.substr(0, size), "x.off"); }) == "file-truncated");
-  }
-}
-
-TEST_CASE("files with random bytes changed parse or are refused by name", "[off]") {
-  std::mt19937 random(1);
-  const std::string bytes = "0123456789 -+.eE#\n\r\tOFCNanif\xff";
-  for (const fs::path& file : corpus("accepted")) {
-    INFO(file.filename());
-    const std::string text = read_file(file);
-    for (int round = 0; round < 200; ++round) {
-      std::string bad = text;
-      for (std::size_t i = random() % 4 + 1; i != 0; --i) bad[random() % bad.size()] = bytes[random() % bytes.size()];
-      INFO(bad);
-      CHECK_NOTHROW(fault_of([&] {
-        RawMesh mesh = parse_off(bad, "x.off");
-        audit(mesh);
-        ManifoldSurface::from(ClosedSurface::from(std::move(mesh)));
-      }));
-    }
   }
 }
 

@@ -1,6 +1,7 @@
 #include "host/cli/commands.hpp"
 
 #include "host/error.hpp"
+#include "host/io/mesh_format.hpp"
 #include "host/mesh/builtin.hpp"
 
 #include <fmt/format.h>
@@ -89,7 +90,9 @@ OriginChoice parse_origin(const std::string& text) {
 }
 
 std::string mesh_help() {
-  std::string text = "An OFF file, `benchmark` (libigl's cow.off), or a built-in body:";
+  std::string text = "A file (";
+  for (const auto& format : mesh_formats()) text += fmt::format("{}, ", format.name);
+  text += "told by its content; - is standard input), `benchmark` (libigl's cow.off), or a built-in body:";
   for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);
   return text;
 }

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/file.hpp"
+#include "host/io/mesh_format.hpp"
 #include "host/io/off.hpp"
 #include "host/io/sha256.hpp"
 #include "host/mesh/builtin.hpp"
@@ -52,7 +53,8 @@ RawMesh load_mesh(const std::string& name) {
     return mesh;
   }
   if (name == "benchmark") return load_benchmark();
-  return parse_off(read_file(name), name);
+  if (name == "-") return parse_mesh(read_file("/dev/stdin"), "standard input");
+  return parse_mesh(read_file(name), name);
 }
 
 } // namespace cowgpu

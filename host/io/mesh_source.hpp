@@ -16,8 +16,8 @@ inline constexpr const char* benchmark_sha256 = "8834713b505f9bf78c7f7c8b719d51d
 std::vector<std::filesystem::path> mesh_folders();
 
 /// A mesh by name: "builtin:..." (host/mesh/builtin.hpp), "benchmark" (cow.off in one of mesh_folders(), its hash
-/// checked), anything else a path to an OFF file. Throws Error(mesh_missing) with where to get the benchmark,
-/// cannot_read, file_format, and what parse_off() and builtin_mesh() throw.
+/// checked), "-" for standard input, anything else a path to a file of one of mesh_formats(), told by its content. Throws
+/// Error(mesh_missing) with where to get the benchmark, cannot_read, and what parse_mesh() and builtin_mesh() throw.
 RawMesh load_mesh(const std::string& name);
 
 } // namespace cowgpu

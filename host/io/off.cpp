@@ -1,16 +1,14 @@
 #include "host/io/off.hpp"
 
 #include "host/error.hpp"
+#include "host/io/face_fans.hpp"
 #include "host/io/sha256.hpp"
 #include "host/io/shown.hpp"
+#include "host/io/words.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <limits>
-#include <optional>
 
 namespace cowgpu {
 namespace {
@@ -18,101 +16,6 @@ namespace {
 constexpr std::uint64_t max_count = 0xffffffff;
 constexpr std::size_t min_vertex_bytes = 6; // "0 0 0\n"
 constexpr std::size_t min_face_bytes = 8;   // "3 0 0 0\n"
-
-bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-}
-bool is_line_end(char c) {
-  return c == '\n' || c == '\r';
-}
-
-/// Cuts text into words and counts lines. A word's line is line() until the next call.
-class Scanner {
-public:
-  explicit Scanner(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
-
-  std::size_t line() const { return line_; }
-  std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
-
-  /// The next word, on this line or below; empty at the end of the file.
-  std::string_view word() {
-    skip_blanks();
-    while (at_ != end_ && is_line_end(*at_)) {
-      if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
-      ++at_;
-      ++line_;
-      skip_blanks();
-    }
-    return take();
-  }
-
-  /// The next word of this line; empty at the line's end.
-  std::string_view word_on_line() {
-    skip_blanks();
-    return take();
-  }
-
-  void skip_line() {
-    while (at_ != end_ && !is_line_end(*at_)) ++at_;
-  }
-
-  /// Gives back the last `count` characters of the word just taken.
-  void put_back(std::size_t count) { at_ -= count; }
-
-private:
-  void skip_blanks() {
-    while (at_ != end_ && is_blank(*at_)) ++at_;
-    if (at_ != end_ && *at_ == '#') skip_line();
-  }
-
-  std::string_view take() {
-    const char* begin = at_;
-    while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && *at_ != '#') ++at_;
-    return {begin, static_cast<std::size_t>(at_ - begin)};
-  }
-
-  const char* at_;
-  const char* end_;
-  std::size_t line_ = 1;
-};
-
-/// from_chars knows no plus sign.
-std::string_view without_plus(std::string_view word) {
-  if (word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
-  return word;
-}
-
-template <class Number>
-std::from_chars_result read(std::string_view word, Number& value) {
-  return std::from_chars(word.data(), word.data() + word.size(), value);
-}
-
-/// The word as a double; numbers beyond double's range become 0 or infinity. Empty if the word is no number.
-std::optional<double> to_number(std::string_view word) {
-  word = without_plus(word);
-  double value = 0;
-  auto result = read(word, value);
-  if (result.ec == std::errc::result_out_of_range) {
-    long double wide = 0;
-    result = read(word, wide);
-    if (std::fabs(wide) > std::numeric_limits<double>::max()) wide = std::copysign(HUGE_VALL, wide);
-    value = static_cast<double>(wide);
-  }
-  if (result.ec != std::errc() || result.ptr != word.data() + word.size()) return {};
-  return value;
-}
-
-/// The word as an integer, held at the ends of the range if beyond it. Empty if the word is no integer.
-std::optional<std::int64_t> to_integer(std::string_view word) {
-  word = without_plus(word);
-  std::int64_t value = 0;
-  const auto result = read(word, value);
-  if (result.ptr != word.data() + word.size()) return {};
-  if (result.ec == std::errc::result_out_of_range)
-    return word[0] == '-' ? std::numeric_limits<std::int64_t>::min() : std::numeric_limits<std::int64_t>::max();
-  if (result.ec != std::errc()) return {};
-  return value;
-}
 
 class OffParser {
 public:
@@ -253,7 +156,7 @@ private:
     const std::size_t room = std::min<std::size_t>(face_count_, scan_.left() / min_face_bytes + 1);
     mesh_.faces.reserve(room);
     mesh_.face_lines.reserve(room);
-    std::uint64_t polygons = 0;
+    FaceFans fans(mesh_);
     for (; faces_found_ < face_count_; ++faces_found_) {
       const std::string_view word = scan_.word();
       if (word.empty()) ended();
@@ -265,22 +168,11 @@ private:
                          faces_found_, *corners, hint()));
       // Every corner takes a blank and a digit.
       if (static_cast<std::uint64_t>(*corners) > scan_.left() / 2) ended();
-      const auto line = static_cast<std::uint32_t>(std::min<std::uint64_t>(scan_.line(), max_count));
-      const std::uint32_t first = corner();
-      std::uint32_t previous = corner();
-      for (std::int64_t i = 2; i < *corners; ++i) {
-        const std::uint32_t next = corner();
-        mesh_.faces.push_back({first, previous, next});
-        mesh_.face_lines.push_back(line);
-        previous = next;
-      }
-      polygons += *corners > 3;
+      fans.begin(scan_.line());
+      for (std::int64_t i = 0; i < *corners; ++i) fans.corner(corner());
       scan_.skip_line(); // the face's colour
     }
-    if (polygons != 0)
-      mesh_.notes.push_back(
-          fmt::format("{} {} of more than three corners {} cut into triangles, fans from the first corner.", polygons,
-                      polygons == 1 ? "polygon" : "polygons", polygons == 1 ? "was" : "were"));
+    fans.note();
   }
 
   void rest() {
@@ -289,7 +181,7 @@ private:
           fmt::format("Data after the last announced face were ignored (from line {}).", scan_.line()));
   }
 
-  Scanner scan_;
+  WordScanner scan_;
   RawMesh mesh_;
   bool colours_ = false, normals_ = false, texture_ = false;
   bool long_vertex_lines_ = false; // several vertices on one line, or colours without a header that says so
@@ -300,9 +192,7 @@ private:
 } // namespace
 
 RawMesh parse_off(std::string_view bytes, const std::string& name) {
-  std::string_view text = bytes;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  RawMesh mesh = OffParser(text, name).parse();
+  RawMesh mesh = OffParser(without_byte_order_mark(bytes), name).parse();
   mesh.sha256 = sha256_hex(bytes);
   return mesh;
 }

@@ -1,16 +1,14 @@
 #include "host/io/ply.hpp"
 
 #include "host/error.hpp"
+#include "host/io/ply_header.hpp"
 #include "host/io/shown.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cstring>
-#include <optional>
 
 namespace cowgpu {
 namespace {
@@ -18,7 +16,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the writer and the reader copy memory");
 
 constexpr std::uint64_t most_written = 0x7fffffff; // indices are ints
-constexpr std::uint64_t most_read = 0xffffffff;
 constexpr std::size_t face_bytes = 1 + 3 * sizeof(std::uint32_t);
 
 std::string one_line(std::string text) {
@@ -55,25 +52,6 @@ std::string header_of(const TriangleSurface& surface, std::span<const std::strin
          fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", surface.faces.size());
 }
 
-/// Bytes of a scalar type; 0 for what is none.
-std::size_t type_bytes(std::string_view type) {
-  struct Type {
-    std::string_view name;
-    std::size_t bytes;
-  };
-  static constexpr Type types[] = {{"char", 1},  {"uchar", 1},  {"int8", 1},    {"uint8", 1},
-                                   {"short", 2}, {"ushort", 2}, {"int16", 2},   {"uint16", 2},
-                                   {"int", 4},   {"uint", 4},   {"int32", 4},   {"uint32", 4},
-                                   {"float", 4}, {"double", 8}, {"float32", 4}, {"float64", 8}};
-  for (const Type& known : types)
-    if (known.name == type) return known.bytes;
-  return 0;
-}
-
-bool is_real(std::string_view type) {
-  return type == "float" || type == "float32" || type == "double" || type == "float64";
-}
-
 class PlyParser {
 public:
   PlyParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
@@ -84,7 +62,7 @@ public:
     PlyMesh mesh;
     vertices(mesh);
     faces(mesh);
-    mesh.comments = std::move(comments_);
+    mesh.comments = std::move(header_.comments);
     return mesh;
   }
 
@@ -93,104 +71,57 @@ private:
     std::size_t offset = 0, bytes = 0; // bytes 0: not announced
   };
 
-  [[noreturn]] void fail(Fault fault, const std::string& sentence) const {
-    throw Error(fault, fmt::format("{}:{}: {}", name_, line_number_, sentence));
+  [[noreturn]] void fail(Fault fault, std::size_t line, const std::string& sentence) const {
+    throw Error(fault, fmt::format("{}:{}: {}", name_, line, sentence));
   }
   [[noreturn]] void fail_at(Fault fault, std::size_t offset, const std::string& sentence) const {
     throw Error(fault, fmt::format("{}: at byte {}: {}", name_, offset, sentence));
   }
 
-  /// The next line of the header, cut into words.
-  std::vector<std::string_view> line() {
-    ++line_number_;
-    const std::size_t end = bytes_.find('\n', at_);
-    if (end == std::string_view::npos)
-      fail(Fault::file_truncated, "the file ends within its header. It was cut off; write or fetch it again.");
-    std::string_view rest = bytes_.substr(at_, end - at_);
-    if (rest.ends_with('\r')) rest.remove_suffix(1);
-    at_ = end + 1;
-    std::vector<std::string_view> words;
-    while (!rest.empty()) {
-      const std::size_t begin = std::min(rest.find_first_not_of(" \t"), rest.size());
-      const std::size_t length = std::min(rest.find_first_of(" \t", begin), rest.size()) - begin;
-      if (length) words.push_back(rest.substr(begin, length));
-      rest.remove_prefix(begin + length);
-    }
-    return words;
+  void header() {
+    header_ = read_ply_header(bytes_, name_);
+    at_ = header_.size;
+    if (header_.encoding != PlyEncoding::little_endian)
+      fail(Fault::file_format, 2,
+           fmt::format("'{}' is not read here, only binary_little_endian, as `cowgpu map -o FILE.ply` writes it.",
+                       header_.encoding == PlyEncoding::ascii ? "ascii" : "binary_big_endian"));
+    for (std::size_t e = 0; e < header_.elements.size(); ++e)
+      if (const PlyElement& element = header_.elements[e]; e > 1 || element.name != (e == 0 ? "vertex" : "face"))
+        fail(
+            Fault::file_format, element.line,
+            fmt::format("the element '{}' is not read here: a file of vertices, then faces, is.", shown(element.name)));
+    if (header_.elements.empty()) fail(Fault::file_format, header_.lines, "there are no vertices.");
+    vertex_element(header_.elements[0]);
+    if (header_.elements.size() == 2) face_element(header_.elements[1]);
   }
 
-  void header() {
-    if (!bytes_.starts_with("ply\n") && !bytes_.starts_with("ply\r\n"))
-      fail(bytes_.empty() ? Fault::file_truncated : Fault::file_format,
-           "this is no PLY file: its first line is not 'ply'. A file that `cowgpu map -o FILE.ply` has written is "
-           "wanted.");
-    line();
-    const auto format = line();
-    if (format.size() != 3 || format[0] != "format")
-      fail(Fault::file_syntax, "the second line of a PLY file begins with 'format'.");
-    if (format[1] != "binary_little_endian" || format[2] != "1.0")
-      fail(Fault::file_format,
-           fmt::format("'{} {}' is not read, only binary_little_endian 1.0.", shown(format[1]), shown(format[2])));
-    for (;;) {
-      const auto words = line();
-      if (words.empty()) fail(Fault::file_syntax, "an empty line in the header.");
-      if (words[0] == "end_header") break;
-      if (words[0] == "obj_info") continue;
-      if (words[0] == "comment") {
-        comments_.push_back(fmt::format("{}", fmt::join(words.begin() + 1, words.end(), " ")));
-        continue;
-      }
-      if (words[0] == "element")
-        element(words);
-      else if (words[0] == "property")
-        property(words);
-      else
-        fail(Fault::file_syntax, fmt::format("'{}' is no word of a PLY header.", shown(words[0])));
+  void vertex_element(const PlyElement& element) {
+    vertex_count_ = element.count;
+    for (const PlyProperty& property : element.properties) {
+      if (property.is_list)
+        fail(Fault::file_format, property.line, "a property of a vertex is a scalar type and a name.");
+      for (std::size_t c = 0; c < 3; ++c)
+        if (property.name == std::string_view("xyz").substr(c, 1)) {
+          if (!is_real(property.type))
+            fail(Fault::file_format, property.line, "x, y and z must be of type double or float.");
+          coordinates_[c] = {stride_, bytes_of(property.type)};
+        }
+      stride_ += bytes_of(property.type);
     }
     for (const Coordinate& c : coordinates_)
-      if (c.bytes == 0) fail(Fault::file_format, "the vertices do not have x, y and z.");
-    if (elements_ == 2 && !indices_) fail(Fault::file_format, "the faces do not have vertex_indices.");
+      if (c.bytes == 0) fail(Fault::file_format, element.line, "the vertices do not have x, y and z.");
   }
 
-  void element(const std::vector<std::string_view>& words) {
-    std::uint64_t count = 0;
-    if (words.size() == 3) {
-      const auto result = std::from_chars(words[2].data(), words[2].data() + words[2].size(), count);
-      if (result.ec != std::errc() || result.ptr != words[2].data() + words[2].size() || count > most_read)
-        fail(Fault::file_syntax, fmt::format("'{}' {} are announced; from 0 to {} are possible.", shown(words[2]),
-                                             shown(words[1]), most_read));
-    } else {
-      fail(Fault::file_syntax, "an element has a name and a number.");
-    }
-    const std::string_view expected = elements_ == 0 ? "vertex" : elements_ == 1 ? "face" : "";
-    if (words[1] != expected)
-      fail(Fault::file_format,
-           fmt::format("the element '{}' is not read here: a file of vertices, then faces, is.", shown(words[1])));
-    (elements_++ == 0 ? vertex_count_ : face_count_) = count;
-  }
-
-  void property(const std::vector<std::string_view>& words) {
-    if (elements_ == 0) fail(Fault::file_syntax, "a property before the first element.");
-    if (elements_ == 2) {
-      const bool triangles = words.size() == 5 && words[1] == "list" && (words[2] == "uchar" || words[2] == "uint8") &&
-                             type_bytes(words[3]) == 4 && !is_real(words[3]) &&
-                             (words[4] == "vertex_indices" || words[4] == "vertex_index");
-      if (!triangles || indices_)
-        fail(Fault::file_format, "faces must have one property: list uchar int vertex_indices.");
-      indices_ = true;
-      return;
-    }
-    const std::size_t bytes = words.size() == 3 ? type_bytes(words[1]) : 0;
-    if (bytes == 0)
-      fail(words.size() > 1 && words[1] == "list" ? Fault::file_format : Fault::file_syntax,
-           "a property of a vertex is a scalar type and a name.");
-    for (std::size_t c = 0; c < 3; ++c)
-      if (words[2] == std::string_view("xyz").substr(c, 1)) {
-        if (!is_real(words[1])) fail(Fault::file_format, "x, y and z must be of type double or float.");
-        if (coordinates_[c].bytes) fail(Fault::file_syntax, fmt::format("{} is announced twice.", words[2]));
-        coordinates_[c] = {stride_, bytes};
-      }
-    stride_ += bytes;
+  void face_element(const PlyElement& element) {
+    face_count_ = element.count;
+    const bool triangles =
+        element.properties.size() == 1 && element.properties[0].is_list &&
+        element.properties[0].count_type == PlyType::uint8 &&
+        (element.properties[0].type == PlyType::int32 || element.properties[0].type == PlyType::uint32) &&
+        (element.properties[0].name == "vertex_indices" || element.properties[0].name == "vertex_index");
+    if (!triangles)
+      fail(Fault::file_format, element.properties.empty() ? element.line : element.properties.back().line,
+           "faces must have one property: list uchar int vertex_indices.");
   }
 
   /// Before anything is allocated. Neither product exceeds 2^32 times the length of the header.
@@ -239,12 +170,10 @@ private:
 
   std::string_view bytes_;
   const std::string& name_;
-  std::size_t at_ = 0, line_number_ = 0, stride_ = 0;
+  PlyHeader header_;
+  std::size_t at_ = 0, stride_ = 0;
   std::uint64_t vertex_count_ = 0, face_count_ = 0;
-  int elements_ = 0;
-  bool indices_ = false;
   Coordinate coordinates_[3];
-  std::vector<std::string> comments_;
 };
 
 } // namespace

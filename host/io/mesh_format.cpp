@@ -1,0 +1,105 @@
+#include "host/io/mesh_format.hpp"
+
+#include "host/error.hpp"
+#include "host/io/gltf.hpp"
+#include "host/io/obj.hpp"
+#include "host/io/off.hpp"
+#include "host/io/ply_header.hpp"
+#include "host/io/ply_reader.hpp"
+#include "host/io/shown.hpp"
+#include "host/io/stl.hpp"
+#include "host/io/words.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace cowgpu {
+namespace {
+
+enum Index { off, obj, ply, stl, gltf };
+
+constexpr MeshFormat formats[] = {{"OFF", ".off", parse_off},
+                                  {"OBJ", ".obj", parse_obj},
+                                  {"PLY", ".ply", parse_ply},
+                                  {"STL", ".stl", parse_stl},
+                                  {"glTF", ".gltf .glb", parse_gltf}};
+
+/// The format whose suffix the name has, in either case; null for another.
+const MeshFormat* by_suffix(const std::string& name) {
+  const std::string suffix = std::filesystem::path(name).extension();
+  if (suffix.empty()) return nullptr;
+  for (const MeshFormat& format : formats) {
+    WordScanner scan(format.suffixes);
+    for (std::string_view known = scan.word(); !known.empty(); known = scan.word())
+      if (same_word(known, suffix)) return &format;
+  }
+  return nullptr;
+}
+
+/// OFF, COFF, STCN4OFF ..., alone or with a number glued to it.
+bool is_off_header(std::string_view word) {
+  const std::size_t at = word.find("OFF");
+  if (at == std::string_view::npos) return false;
+  return word.substr(0, at).find_first_not_of("STCN4n") == std::string_view::npos &&
+         word.substr(at + 3).find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// By the bytes alone; null where they say nothing.
+const MeshFormat* by_content(std::string_view bytes, const MeshFormat* suffix) {
+  if (bytes.starts_with("glTF")) return &formats[gltf];
+  if (starts_as_ply(bytes)) return &formats[ply];
+  const bool text = bytes.substr(0, 1024).find('\0') == std::string_view::npos;
+  if (looks_like_binary_stl(bytes)) {
+    // A file that is not of the length its head announces, cut off or with more behind: zero bytes alone say little.
+    const bool solid = same_word(bytes.substr(0, 5), "solid");
+    if (text || solid || suffix == &formats[stl]) return &formats[stl];
+    if (bytes.size() >= 84 && (bytes.size() - 84) % 50 == 0) return &formats[stl];
+  }
+  if (!text) return nullptr;
+  const std::string_view word = WordScanner(without_byte_order_mark(bytes)).word();
+  if (word.starts_with('{')) return &formats[gltf];
+  if (is_off_header(word)) return &formats[off];
+  if (same_word(word, "solid")) return &formats[stl];
+  if (is_obj_statement(word)) return &formats[obj];
+  return nullptr;
+}
+
+} // namespace
+
+std::span<const MeshFormat> mesh_formats() {
+  return formats;
+}
+
+const MeshFormat& mesh_format_of(std::string_view bytes, const std::string& name) {
+  const MeshFormat* suffix = by_suffix(name);
+  if (const MeshFormat* format = by_content(bytes, suffix)) return *format;
+  const auto refuse = [&](Fault fault, const std::string& sentence) {
+    throw Error(fault, fmt::format("{}:1: {}", name, sentence));
+  };
+  if (bytes.starts_with("\x1f\x8b") || bytes.starts_with("PK\x03\x04") || bytes.starts_with("BZh") ||
+      bytes.starts_with("\xfd"
+                        "7zXZ"))
+    refuse(Fault::file_format, "this is a compressed file. Unpack it first.");
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
+    refuse(Fault::file_format, "the file is UTF-16 text. Save it as UTF-8 or ASCII.");
+  if (suffix) return *suffix; // its reader says what is wrong
+  std::string names;
+  for (const MeshFormat& format : formats) names += fmt::format("{}{}", names.empty() ? "" : ", ", format.name);
+  if (bytes.empty()) refuse(Fault::file_truncated, "the file is empty. Fetch or export it again.");
+  const std::string_view word = WordScanner(without_byte_order_mark(bytes)).word();
+  refuse(Fault::file_format,
+         fmt::format("this is no mesh: it begins with '{}'. Read are {}; export the mesh as one of these.", shown(word),
+                     names));
+  return formats[off]; // refuse() throws
+}
+
+RawMesh parse_mesh(std::string_view bytes, const std::string& name) {
+  const MeshFormat& format = mesh_format_of(bytes, name);
+  RawMesh mesh = format.parse(bytes, name);
+  if (const MeshFormat* suffix = by_suffix(name); suffix && suffix != &format)
+    mesh.notes.push_back(fmt::format("The file's name says {}, but it holds {}.", suffix->name, format.name));
+  return mesh;
+}
+
+} // namespace cowgpu

@@ -1,0 +1,213 @@
+#include "host/io/stl.hpp"
+
+#include "host/error.hpp"
+#include "host/io/sha256.hpp"
+#include "host/io/shown.hpp"
+#include "host/io/words.hpp"
+#include "host/mesh/topology.hpp"
+#include "host/mesh/weld.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <optional>
+
+namespace cowgpu {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the reader copies memory");
+
+constexpr std::size_t header_bytes = 84, facet_bytes = 50, normal_bytes = 12, corner_bytes = 12;
+constexpr std::size_t most_facets = 0x55555554; // three corners each in 32 bits
+
+std::uint64_t announced(std::string_view bytes) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, sizeof count);
+  return count;
+}
+
+Vec3 floats(const char* at) {
+  std::array<float, 3> xyz;
+  std::memcpy(xyz.data(), at, sizeof xyz);
+  return {double(xyz[0]), double(xyz[1]), double(xyz[2])};
+}
+
+class StlParser {
+public:
+  StlParser(std::string_view bytes, const std::string& name) : bytes_(bytes), welder_(mesh_.vertices) {
+    mesh_.name = name;
+  }
+
+  RawMesh parse() {
+    if (looks_like_binary_stl(bytes_))
+      binary();
+    else
+      ascii();
+    notes();
+    return std::move(mesh_);
+  }
+
+private:
+  [[noreturn]] void fail(Fault fault, std::size_t line, const std::string& sentence) const {
+    throw Error(fault, fmt::format("{}:{}: {}", mesh_.name, line, sentence));
+  }
+
+  void facet(const Vec3& normal, const std::array<Vec3, 3>& corners, std::optional<std::size_t> line) {
+    ++facets_;
+    const double along = normal.dot((corners[1] - corners[0]).cross(corners[2] - corners[0]));
+    against_ += along < 0;
+    along_ += along > 0;
+    const Face face = {welder_.index(corners[0]), welder_.index(corners[1]), welder_.index(corners[2])};
+    if (repeats_vertex(face)) return;
+    mesh_.faces.push_back(face);
+    if (line) mesh_.face_lines.push_back(static_cast<std::uint32_t>(std::min<std::size_t>(*line, 0xffffffff)));
+  }
+
+  void binary() {
+    const auto truncated = [&](const std::string& what) {
+      throw Error(Fault::file_truncated,
+                  fmt::format("{}: at byte {}: {} It was cut off or its header is wrong; fetch or "
+                              "export it again.",
+                              mesh_.name, bytes_.size(), what));
+    };
+    if (bytes_.size() < header_bytes) truncated("the file ends within the 84 bytes before the first facet.");
+    const std::uint64_t count = announced(bytes_), found = (bytes_.size() - header_bytes) / facet_bytes;
+    if (found < count) truncated(fmt::format("the file ends after {} of {} facets.", found, count));
+    if (count > most_facets)
+      throw Error(Fault::too_large, fmt::format("{}: {} facets; up to {} are read.", mesh_.name, count, most_facets));
+    mesh_.faces.reserve(count);
+    mesh_.vertices.reserve(count / 2 + 2); // of a closed surface of one shell
+    std::uint64_t attributes = 0;
+    for (std::uint64_t f = 0; f < count; ++f) {
+      const char* at = bytes_.data() + header_bytes + f * facet_bytes;
+      const char* corner = at + normal_bytes;
+      facet(floats(at), {floats(corner), floats(corner + corner_bytes), floats(corner + 2 * corner_bytes)}, {});
+      attributes += at[facet_bytes - 2] != 0 || at[facet_bytes - 1] != 0;
+    }
+    if (attributes != 0)
+      mesh_.notes.push_back(
+          fmt::format("The attribute bytes of {} facets, colours usually, were skipped.", attributes));
+    if (const std::size_t end = header_bytes + count * facet_bytes; end != bytes_.size())
+      mesh_.notes.push_back(
+          fmt::format("{} bytes after the last facet were ignored (from byte {}).", bytes_.size() - end, end));
+  }
+
+  void ascii() {
+    WordScanner scan(without_byte_order_mark(bytes_), '\0');
+    std::string_view word = scan.word();
+    if (word.empty()) fail(Fault::file_truncated, scan.line(), "the file is empty. Fetch or export it again.");
+    if (!same_word(word, "solid"))
+      fail(Fault::file_format, scan.line(),
+           fmt::format("this is no STL file: it begins with '{}' where the word solid belongs.", shown(word)));
+    // Less than this no facet takes: "facet normal 0 0 0 outer loop vertex 0 0 0 ... endloop endfacet".
+    mesh_.faces.reserve(bytes_.size() / 88);
+    mesh_.face_lines.reserve(bytes_.size() / 88);
+    for (; !word.empty(); word = scan.word()) {
+      require(scan, word, "solid");
+      solid(scan);
+    }
+  }
+
+  [[noreturn]] void unexpected(const WordScanner& scan, std::string_view word, std::string_view expected) const {
+    if (word.empty() || scan.left() == 0)
+      fail(Fault::file_truncated, scan.line(),
+           fmt::format("the file ends after {} facets, before {}. It was cut off; fetch or export it again.", facets_,
+                       expected));
+    fail(Fault::file_syntax, scan.line(),
+         fmt::format("{} expected after {} facets, found '{}'.", expected, facets_, shown(word)));
+  }
+
+  void require(const WordScanner& scan, std::string_view word, std::string_view expected) const {
+    if (!same_word(word, expected)) unexpected(scan, word, fmt::format("'{}'", expected));
+  }
+  void require(WordScanner& scan, std::string_view expected) const { require(scan, scan.word(), expected); }
+
+  /// After the word `solid`, to the name behind `endsolid`.
+  void solid(WordScanner& scan) {
+    std::string_view word = skip_name(scan);
+    if (word.empty()) word = scan.word();
+    for (; same_word(word, "facet"); word = scan.word()) {
+      const std::size_t line = scan.line();
+      require(scan, "normal");
+      const Vec3 normal = vector(scan, false);
+      require(scan, "outer");
+      require(scan, "loop");
+      std::array<Vec3, 3> corners;
+      for (Vec3& corner : corners) {
+        require(scan, "vertex");
+        corner = vector(scan, true);
+      }
+      require(scan, "endloop");
+      require(scan, "endfacet");
+      if (facets_ == most_facets) fail(Fault::too_large, line, fmt::format("more than {} facets.", most_facets));
+      facet(normal, corners, line);
+    }
+    require(scan, word, "endsolid");
+    if (!skip_name(scan).empty()) fail(Fault::file_syntax, scan.line(), "a facet after the word endsolid.");
+  }
+
+  /// Skips a solid's name, to the line's end or to the words `facet normal`; then the word `facet` is returned.
+  static std::string_view skip_name(WordScanner& scan) {
+    for (std::string_view word = scan.word_on_line(); !word.empty(); word = scan.word_on_line()) {
+      WordScanner ahead = scan;
+      if (same_word(word, "facet") && same_word(ahead.word_on_line(), "normal")) return word;
+    }
+    return {};
+  }
+
+  /// Three numbers. What is no number is let pass in normals, where some programs write "-nan(ind)".
+  Vec3 vector(WordScanner& scan, bool strict) const {
+    Vec3 v;
+    for (int c = 0; c < 3; ++c) {
+      const std::string_view word = scan.word();
+      const auto value = to_number(word);
+      if (word.empty() || (!value && (strict || same_word(word, "outer")))) unexpected(scan, word, "a number");
+      v[c] = value.value_or(0);
+    }
+    return v;
+  }
+
+  void notes() {
+    const std::size_t corners = 3 * facets_, vertices = mesh_.vertices.size(), left_out = facets_ - mesh_.faces.size();
+    mesh_.notes.push_back(fmt::format("STL has no topology: {} corners of {} facets were welded into {} vertices where "
+                                      "their coordinates are exactly equal.",
+                                      corners, facets_, vertices));
+    if (left_out != 0)
+      mesh_.notes.push_back(fmt::format("{} facets with two corners at one point were left out.", left_out));
+    if (100 * against_ > facets_)
+      mesh_.notes.push_back(
+          fmt::format("The normals of {} of {} facets look against the order of their corners; the order "
+                      "counts.",
+                      against_, against_ + along_));
+  }
+
+  std::string_view bytes_;
+  RawMesh mesh_;
+  PointWelder welder_;
+  std::size_t facets_ = 0, along_ = 0, against_ = 0;
+};
+
+} // namespace
+
+bool looks_like_binary_stl(std::string_view bytes) {
+  if (bytes.size() >= header_bytes && (bytes.size() - header_bytes) % facet_bytes == 0 &&
+      announced(bytes) == (bytes.size() - header_bytes) / facet_bytes)
+    return true;
+  for (const std::string_view magic : {"glTF", "ply\n", "ply\r", "\xff\xfe", "\xfe\xff"})
+    if (bytes.starts_with(magic)) return false;
+  // Text holds no zero byte; the number of facets, their coordinates and their attributes do.
+  return bytes.substr(0, 1024).find('\0') != std::string_view::npos;
+}
+
+RawMesh parse_stl(std::string_view bytes, const std::string& name) {
+  RawMesh mesh = StlParser(bytes, name).parse();
+  mesh.sha256 = sha256_hex(bytes);
+  return mesh;
+}
+
+} // namespace cowgpu
