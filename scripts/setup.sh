@@ -95,7 +95,7 @@ ensure_packages() {
 # archive under the package's documentation, which an installation may leave out, so the package itself is unpacked.
 # Nothing fails without a network: those tests are skipped then.
 fetch_bodies() {
-  local bodies=$root/build/bodies part=$root/build/bodies.part archive=usr/share/doc/libcgal-dev/data.tar.gz
+  local bodies=$root/data/meshes/cgal part=$root/build/bodies.part archive=usr/share/doc/libcgal-dev/data.tar.gz
   local fetch=(apt-get -q -o Acquire::Retries=1 -o Acquire::http::Timeout=20 -o APT::Sandbox::User=root download libcgal-demo)
   [[ ! -d $bodies ]] || return 0
   command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || return 0

@@ -42,6 +42,9 @@ void add_inflate(CLI::App& app, Common& common);
 void add_distance(CLI::App& app, Common& common);
 void add_streamlines(CLI::App& app, Common& common);
 
+/// Adds `meshes` and `meshes add`.
+void add_meshes(CLI::App& app);
+
 /// Adds `man` and `completion`, which print the man page and the shell completion of `app`.
 void add_manual(CLI::App& app);
 

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   cli::add_distance(app, common);
   cli::add_streamlines(app, common);
   cli::add_inspect(app, common);
+  cli::add_meshes(app);
   cli::add_devices(app, common);
   cli::add_render(app, common);
   cli::add_bench(app, common);

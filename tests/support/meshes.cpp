@@ -232,7 +232,7 @@ std::optional<ClosedSurface> demo_body(const std::string& name) {
 }
 
 void skip_without_bodies(const std::string& name) {
-  std::cout << "SKIPPED: " << name << " of Debian's libcgal-demo is not in build/bodies; ./check fetches it" << std::endl;
+  std::cout << "SKIPPED: " << name << " of Debian's libcgal-demo is not in data/meshes/cgal; ./check fetches it" << std::endl;
 }
 
 } // namespace cowgpu::test

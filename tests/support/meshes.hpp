@@ -48,7 +48,7 @@ void skip_without_cow();
 
 /// The closed bodies of genus 0 among those of Debian's libcgal-demo.
 extern const std::vector<std::string> demo_bodies;
-/// One of them by name ("bull"), found in $COWGPU_BODIES or in build/bodies, where ./check puts them.
+/// One of them by name ("bull"), found in $COWGPU_BODIES or in data/meshes/cgal, where ./check puts them.
 std::optional<ClosedSurface> demo_body(const std::string& name);
 /// Makes ctest list the test as skipped; the test returns then.
 void skip_without_bodies(const std::string& name);
