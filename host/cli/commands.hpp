@@ -42,6 +42,10 @@ void add_inflate(CLI::App& app, Common& common);
 void add_distance(CLI::App& app, Common& common);
 void add_streamlines(CLI::App& app, Common& common);
 
+/// Checks of options: a finite number above 0, or one from 0 on.
+CLI::Validator positive_number();
+CLI::Validator non_negative_number();
+
 /// Adds `roundtrip` to the command `transform`.
 void add_roundtrip(CLI::App& transform, Common& common);
 

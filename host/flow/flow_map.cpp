@@ -143,6 +143,10 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
   return result;
 }
 
+int sheets_grid_degree(int lmax) {
+  return std::max(sheet_grid_degree, surface_grid_degree(lmax));
+}
+
 SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, double tolerance,
                              const ExpandSurfaceOptions& options, DistanceFlow& flow, Backend& backend,
                              Monitor& monitor) {
@@ -171,7 +175,7 @@ SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, 
       return fields;
     };
     ExpandSurfaceOptions of_level = options;
-    if (options.grid_degree == 0) of_level.grid_degree = std::max(sheet_grid_degree, surface_grid_degree(options.lmax));
+    if (options.grid_degree == 0) of_level.grid_degree = sheets_grid_degree(options.lmax);
     of_level.estimate_aliasing = &level == &meshes.back(); // for the uncertainty
     result.expansion = expand_surface(sampler, of_level, backend, monitor, &result.report);
     result.sheets.push_back(sheets);

@@ -61,6 +61,9 @@ struct SheetExpansion {
   FlowReport flow; ///< of the finest mesh's vertices, which hold those of the others
 };
 
+/// Degree of the grid that sheets are counted on unless the options name another: 1024, or surface_grid_degree(lmax).
+int sheets_grid_degree(int lmax);
+
 /// The sutures make the error fall by about half with each refinement, so a is extrapolated as 2 a_k - a_(k-1). The flow
 /// goes by events at `tolerance`. Of the options, grid_degree 0 is max(1024, 2 lmax). Throws Error(bad_argument) for refinements outside 1 ... 5 or time <= 0.
 SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, double tolerance,
