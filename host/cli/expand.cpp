@@ -270,12 +270,15 @@ void add_expand(CLI::App& app, Common& common) {
                        "surface over it, each with its sign: any T, extrapolated over refinements of the mesh)")
           ->check(CLI::IsMember({"level-set", "signed"}))
           ->capture_default_str();
-  CLI::Option* refinements = command
-                                 ->add_option("--refinements", options->refinements,
-                                              "flow: of the mesh, for signed sheets; each takes four times as long")
-                                 ->check(CLI::Range(1, 5))
-                                 ->type_name("N")
-                                 ->capture_default_str();
+  CLI::Option* refinements =
+      command
+          ->add_option(
+              "--refinements", options->refinements,
+              "flow: of the mesh, for signed sheets and the paper's recipe; each takes four times as long. On the "
+              "benchmark at T = 0.2 coefficients to degree 8 are then known to 4e-3 from 3, to 1e-3 from 4")
+          ->check(CLI::Range(1, 5))
+          ->type_name("N")
+          ->capture_default_str();
   CLI::Option* grid = command
                           ->add_option("--flow-grid", options->flow_grid,
                                        "flow: least degree of the grid on which the level set is met")

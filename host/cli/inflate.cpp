@@ -209,9 +209,10 @@ void run(const Options& options, const Common& common) {
       if (star->lower == 0 && star->upper < 1e-4 * longest)
         throw Error(
             Fault::bad_argument,
-            fmt::format("--levels star: {} is star-shaped about ({:.6g}, {:.6g}, {:.6g}) as it is, t* <= {:.3g}: "
-                        "there is nothing to inflate; name levels by numbers, or another --origin",
-                        body.surface.mesh().name, body.origin.x(), body.origin.y(), body.origin.z(), star->upper));
+            fmt::format(
+                "--levels star: {} is star-shaped about ({:.6g}, {:.6g}, {:.6g}) as it is, or nearly, t* <= {:.3g}: "
+                "there is nothing to show; name levels by numbers, or another --origin",
+                body.surface.mesh().name, body.origin.x(), body.origin.y(), body.origin.z(), star->upper));
       level.distance = flow_time(0, *star);
     }
     if (!(level.distance >= 1e-4 * longest && level.distance <= 1e4 * longest))

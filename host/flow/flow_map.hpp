@@ -39,7 +39,7 @@ struct LevelSetExpansion {
   StarShapeTime star; ///< looked for even where the time is given
   double time = 0;    ///< T
   /// [degree][field]: the largest over m of what a coefficient is off by. With e the change from the grid of half the degree
-  /// and e' the one before it: e or e' / 4, whichever is more. The means of the angles, as coefficients, are among degree 0.
+  /// and e' the one before it: e or e' / 4, whichever is more, and what rounding of the coordinates does. The means of the angles, as coefficients, are among degree 0.
   std::vector<std::array<double, 6>> uncertainty;
   LevelSetSutures sutures;
   JumpReport averaged;            ///< on the finest grid
@@ -54,7 +54,8 @@ struct SheetExpansion {
   SurfaceExpansion expansion; ///< extrapolated
   ExpandSurfaceReport report; ///< of the finest
   /// [degree][field]: of the expansion, the largest over m. What the last two extrapolations differ by, half the last
-  /// refinement's change, and what the grid of half the degree gives differently, whichever is most.
+  /// refinement's change, and what the grid of half the degree gives differently, whichever is most, and what rounding of
+  /// the coordinates does.
   std::vector<std::array<double, 6>> uncertainty;
   std::vector<SphereCoefficients> levels; ///< of each refinement, means of the angles included
   std::vector<SheetReport> sheets;
