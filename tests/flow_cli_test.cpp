@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <sstream>
 
 using namespace cowgpu;
 using namespace cowgpu::test;
@@ -134,6 +135,12 @@ TEST_CASE("flow options that mean nothing are usage errors", "[flow-cli]") {
       {"expand", "--of", "flow", "--sheets", "unsigned"},
       {"expand", "--of", "flow", "--refinements", "0"},
       {"expand", "--of", "flow", "--flow-grid", "1"},
+      {"expand", "--of", "flow", "--refinements", "2"},
+      {"expand", "--of", "flow", "--sheets", "signed", "--flow-grid", "128"},
+      {"expand", "--of", "flow", "--recipe", "paper", "--flow-grid", "128"},
+      {"expand", "--of", "flow", "--time", "1e300"},
+      {"expand", "--of", "flow", "--time", "1e-300"},
+      {"expand", "--of", "flow", "--sheets", "signed", "--time", "1e6"},
       {"expand", "--of", "flow", "--recipe", "paper", "--time", "0.2"},
       {"expand", "--of", "flow", "--recipe", "paper", "--sheets", "signed"},
       {"expand", "--of", "flow", "--map", "map.ply"},
@@ -141,9 +148,15 @@ TEST_CASE("flow options that mean nothing are usage errors", "[flow-cli]") {
       {"expand", "--of", "stretch", "--recipe", "paper"},
       {"map", "--time", "0.2"},
       {"map", "--method", "flow", "--time", "-0.2"},
+      {"map", "--method", "flow", "--time", "1e300"},
       {"map", "--method", "flow", "--origin", "here"},
       {"map", "--method", "flow", "--sweeps", "3"},
       {"inflate", "--levels", "0.1,"},
+      {"streamlines", "builtin:cow", "--time", "1e300"},
+      {"streamlines", "builtin:cow", "--time", "nan"},
+      {"streamlines", "builtin:cow", "--spacing", "nan"},
+      {"streamlines", "builtin:cow", "--vertices", "nan"},
+      {"inflate", "builtin:box:1,2,3", "--levels", "star"},
       {"inflate", "--levels", "0"},
       {"inflate", "--levels", "-0.1"},
       {"inflate", "--levels", "nan"},
@@ -162,6 +175,42 @@ TEST_CASE("flow options that mean nothing are usage errors", "[flow-cli]") {
     CHECK(run.exit_code == 2);
     CHECK(run.out.empty());
   }
+}
+
+TEST_CASE("no command of the flow writes over the file it reads", "[flow-cli]") {
+  const TemporaryFolder folder;
+  const auto refuses = [&](const std::string& name, const std::vector<std::string>& arguments) {
+    const std::string text = "OFF 4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+    std::ofstream(folder / name) << text;
+    const ProgramRun run = run_on_cpu(arguments);
+    INFO(run.err);
+    CHECK(run.exit_code == 2);
+    CHECK_THAT(run.err, Contains("is input and output at once"));
+    std::ostringstream now;
+    now << std::ifstream(folder / name).rdbuf();
+    CHECK(now.str() == text);
+  };
+  refuses("a.csv", {"distance", folder / "a.csv", "--grid", "3", "-o", folder / "a.csv"});
+  refuses("p.csv", {"distance", "builtin:box:1,2,3", folder / "p.csv", "-o", folder / "p.csv"});
+  refuses("b.csv", {"streamlines", folder / "b.csv", "-o", folder / "b.csv"});
+  refuses("c_0.2.ply", {"inflate", folder / "c_0.2.ply", "--levels", "0.1,0.2", "-o", folder / "c_{}.ply"});
+  refuses("d.png", {"inflate", folder / "d.png", "--levels", "0.1", "--picture", folder / "d.png"});
+}
+
+TEST_CASE("a body that is small in its unit is shown with its digits", "[flow-cli]") {
+  const ProgramRun run =
+      run_on_cpu({"expand", "builtin:box:1e-6,1e-6,1e-6", "--of", "flow", "--lmax", "1", "--flow-grid", "128"});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK_THAT(run.out, Contains("+2.16") && Contains("e-06+0.0000e+00i"));
+}
+
+TEST_CASE("distances are the same on the device that is taken by itself and on the CPU path", "[flow-cli]") {
+  const std::vector<std::string> arguments = {"distance", "builtin:cow@1", "--grid", "9", "-o", "-"};
+  const ProgramRun itself = run_program(arguments), cpu = run_on_cpu(arguments);
+  INFO(itself.err);
+  REQUIRE(itself.exit_code == 0);
+  CHECK(itself.out == cpu.out);
 }
 
 TEST_CASE("commands of the flow stop when they are asked to, and leave no part of a file", "[flow-cli]") {

@@ -81,6 +81,29 @@ TEST_CASE("over a ball the level set's map is the identity up to its sagitta", "
   }
 }
 
+TEST_CASE("far from the coordinates' zero the level set's uncertainty holds what rounding does", "[flow_map]") {
+  const auto backend = make_cpu_backend();
+  Monitor monitor;
+  ExpandSurfaceOptions options;
+  options.lmax = 2;
+  options.grid_degree = 256;
+  const double away = 1e11;
+  const LevelSetExpansion near = expand_level_set(box({1, 1, 1}, {-0.5, -0.5, -0.5}), 0.25, options, *backend, monitor);
+  options.origin = {away, 0, 0};
+  const LevelSetExpansion far =
+      expand_level_set(box({1, 1, 1}, {away - 0.5, -0.5, -0.5}), 0.25, options, *backend, monitor);
+  CHECK(near.uncertainty[0][0] < 2e-5);
+  CHECK(std::isfinite(far.level_set.least_slope));
+  for (int l = 0; l <= 2; ++l)
+    for (int f = 0; f < 3; ++f) {
+      CAPTURE(l, f);
+      for (int m = 0; m <= l; ++m)
+        CHECK(std::abs(far.expansion.coefficients.at(f, l, m) - near.expansion.coefficients.at(f, l, m)) <=
+              far.uncertainty[std::size_t(l)][std::size_t(f)]);
+      CHECK(far.uncertainty[std::size_t(l)][std::size_t(f)] < 1e-4);
+    }
+}
+
 TEST_CASE("sheets of a map without folds are what rays sample", "[flow_map]") {
   const auto backend = make_cpu_backend();
   Monitor monitor;

@@ -223,4 +223,5 @@ for arguments in (["--count", "7"], ["--plane", "1,1,0,0.1", "--spacing", "0.5"]
 assert len(drawn["lines"]) == 8
 drawn["lines"][0]["path"][0] = [0, 1, 2]
 refuses(streamlines, drawn, "a corner without a distance")
-print("36 documents and 5 files passed")
+jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
+print("37 documents and 5 files passed")

@@ -232,6 +232,25 @@ TEST_CASE("off the benchmark's 116 vertices in its mirror plane distances never 
   CHECK(starts_along(loops, 400, mesh.vertices, mesh.faces).places.size() == 400);
 }
 
+TEST_CASE("a line that ends at the origin has no direction, and the others keep theirs", "[streamlines]") {
+  // Between two boxes the middle is a saddle of the distance.
+  const RawMesh mesh = together(box({1, 1, 1}, {-4, -0.5, -0.5}), box({1, 1, 1}, {3, -0.5, -0.5}));
+  StreamlineStarts starts;
+  starts.places = {{-3, 0, 0}, {-4, 0, 0}};
+  starts.normals = {{1, 0, 0}, {-1, 0, 0}};
+  const auto backend = make_cpu_backend();
+  const auto flow = backend->distance_flow(mesh.vertices, mesh.faces);
+  Monitor monitor;
+  FlowOptions options;
+  options.time = 5;
+  const Streamlines found =
+      streamlines(mesh.vertices, mesh.faces, starts, Vec3::Zero(), options, *flow, *backend, monitor);
+  CHECK((found.lines.flags[0] & flow_stationary) != 0);
+  CHECK(found.lines.positions[0].norm() == 0);
+  CHECK(found.directions[0].norm() == 0);
+  CHECK((found.directions[1] + Vec3::UnitX()).norm() < 1e-12);
+}
+
 TEST_CASE("the command writes lines as CSV and JSON, and says why it cannot", "[streamlines]") {
   const TemporaryFolder folder;
   const auto call = [](std::vector<std::string> arguments) {

@@ -47,6 +47,9 @@ void add_meshes(CLI::App& app);
 
 /// Adds `man` and `completion`, which print the man page and the shell completion of `app`.
 void add_manual(CLI::App& app);
+/// Checks of options: a finite number above 0, or one from 0 on.
+CLI::Validator positive_number();
+CLI::Validator non_negative_number();
 
 /// Adds `roundtrip` to the command `transform`.
 void add_roundtrip(CLI::App& transform, Common& common);

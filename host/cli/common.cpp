@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/mesh_format.hpp"
+#include "host/io/shown.hpp"
 #include "host/mesh/builtin.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,29 @@
 #include <cmath>
 
 namespace cowgpu::cli {
+namespace {
+
+// CLI11's own checks let NaN pass, and print bounds of 309 digits.
+CLI::Validator number_check(const char* what, bool (*holds)(double)) {
+  return {[what, holds](const std::string& text) {
+            double value = 0;
+            const char* const end = text.data() + text.size();
+            const auto read = std::from_chars(text.data(), end, value);
+            const bool number = read.ec == std::errc() && read.ptr == end && std::isfinite(value);
+            return number && holds(value) ? std::string() : fmt::format("{} is not {}", shown(text), what);
+          },
+          ""};
+}
+
+} // namespace
+
+CLI::Validator positive_number() {
+  return number_check("a finite number above 0", [](double value) { return value > 0; });
+}
+
+CLI::Validator non_negative_number() {
+  return number_check("a finite number from 0 on", [](double value) { return value >= 0; });
+}
 
 void add_common_options(CLI::App& command, Common& common) {
   command
@@ -92,7 +116,9 @@ OriginChoice parse_origin(const std::string& text) {
 std::string mesh_help() {
   std::string text = "A file (";
   for (const auto& format : mesh_formats()) text += fmt::format("{}, ", format.name);
-  text += "told by its content; - is standard input), `benchmark` (libigl's cow.off), or a built-in body:";
+  text +=
+      "told by its content; - is standard input), a name that `cowgpu meshes` lists, such as benchmark, or a built-in "
+      "body:";
   for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);
   return text;
 }

@@ -133,6 +133,10 @@ void run(const Options& options, const Common& common) {
     throw Error(Fault::bad_argument, "--json and -o - both want the standard output; name a file");
   const FileFormat format = options.output.empty() || to_stdout ? FileFormat::csv : file_format(options.output);
   std::unique_ptr<AtomicFile> file;
+  if (!to_stdout) {
+    refuse_same_file(options.mesh, options.output);
+    refuse_same_file(options.points, options.output);
+  }
   if (!options.output.empty() && !to_stdout && !options.dry_run) file = std::make_unique<AtomicFile>(options.output);
 
   auto start = Clock::now();
@@ -158,23 +162,21 @@ void run(const Options& options, const Common& common) {
   std::string note;
   const auto backend = open_backend(common, &note);
   if (!note.empty()) run.notes.push_back(note);
-  // So far there is no kernel for it.
-  const auto cpu = make_cpu_backend(common.threads);
-  if (backend->facts().type != "cpu") run.notes.push_back("distances are computed on the CPU path so far");
-  run.device = cpu->facts();
-  if (!common.quiet && !run.notes.empty()) say(fmt::format("cowgpu: {}\n", run.notes.back()));
-  const MemoryNeed need = memory_need(*cpu, run, count);
-  check_memory(need, *cpu, options.grid ? "lower --grid" : "pass fewer points at once");
+  run.device = backend->facts();
+  if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
+  const MemoryNeed need = memory_need(*backend, run, count);
+  check_memory(need, *backend, options.grid ? "lower --grid" : "pass fewer points at once");
   if (options.dry_run) {
     write_stdout(fmt::format("plan: {} distances of {} points from {} triangles\n",
                              options.without_sign ? "unsigned" : "signed", count, run.mesh.faces.size()));
     if (run.lattice) write_stdout("grid: " + lattice_text(*run.lattice) + "\n");
     write_stdout("device: " + device_line(run.device) + "\n");
-    write_stdout(fmt::format("memory: at most {} MiB on the host, files and all\n", (need.host >> 20) + 1));
+    write_stdout(fmt::format("memory: at most {} MiB on the host, files and all, and {} MiB on the device\n",
+                             (need.host >> 20) + 1, (need.device + (1 << 20) - 1) >> 20));
     return;
   }
   if (run.lattice) run.queries = run.lattice->points();
-  const auto field = cpu->distance_field(run.mesh.vertices, run.mesh.faces);
+  const auto field = backend->distance_field(run.mesh.vertices, run.mesh.faces);
   run.setup_seconds = seconds_since(start);
   ConsoleMonitor monitor(common.style());
   const ClosestPoints points = field->closest(run.queries, {!options.without_sign}, monitor, &run.report);
@@ -187,7 +189,13 @@ void run(const Options& options, const Common& common) {
     return;
   }
   if (file) {
-    write_distances(table, format, *file);
+    if (format == FileFormat::csv)
+      write_distances_csv(table, [&](std::string_view text) {
+        check_stop(monitor);
+        file->write(text);
+      });
+    else
+      write_distances(table, format, *file);
     check_stop(monitor);
     file->commit();
     run.write_seconds = seconds_since(start);

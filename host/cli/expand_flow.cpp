@@ -18,6 +18,10 @@ constexpr double paper_time = 0.2;
 constexpr double flow_tolerance = 1e-6;
 constexpr double star_tolerance = 1e-6; // in diagonals
 
+std::uint64_t grid_points(int degree) {
+  return 2 * std::uint64_t(degree + 1) * std::uint64_t(degree + 1);
+}
+
 // Each meaning fills in flow, map, expansion and report.
 
 void level_set(double time, int grid_degree, ExpandSurfaceOptions options, const ManifoldSurface& surface,
@@ -30,11 +34,13 @@ void level_set(double time, int grid_degree, ExpandSurfaceOptions options, const
   flow.level_set = found.level_set;
   flow.uncertainty = std::move(found.uncertainty);
   flow.sutures = found.sutures;
+  std::vector<std::string> notes = std::move(found.notes);
   result.expansion = std::move(found.expansion);
   result.report = std::move(found.report);
   const auto start = Clock::now();
   const FlowPoints ends = flow_vertices(surface, flow.time, backend, monitor, flow.points);
   result.map = direction_map(ends.positions, options.origin);
+  result.map.notes.insert(result.map.notes.end(), notes.begin(), notes.end());
   result.map_seconds = seconds_since(start);
 }
 
@@ -90,6 +96,8 @@ void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const Ma
                  const Vec3& origin, Backend& backend, Monitor& monitor, SurfaceResult& result) {
   FlowResult& flow = result.flow.emplace();
   const FlowChoice& how = choice.flow;
+  const double given = choice.paper ? paper_time : how.time;
+  if (given > 0) check_flow_time(given, bounding_box(surface.vertices(), surface.faces()));
   flow.meaning = choice.paper ? "paper" : how.sheets ? "sheets" : "level-set";
   flow.time_choice = choice.paper ? "paper" : how.time > 0 ? "given" : "auto";
   ExpandSurfaceOptions options;
@@ -105,19 +113,23 @@ void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const Ma
   if (flow.time < flow.star.upper) result.map.notes.push_back(star_shape_sentence(flow.star, flow.time));
 }
 
-MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_t faces, const Backend& backend) {
-  const std::uint64_t vertices = faces / 2 + 2;
+MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, int lmax, std::uint64_t faces,
+                              const Backend& backend) {
+  const std::uint64_t vertices = faces / 2 + 2, coefficients = 6 * 16 * SphereCoefficients::count(lmax);
   if (!paper && !choice.sheets) {
     // A grid of its own: positions, the six fields, and a batch of rays.
-    const std::uint64_t points = 2 * std::uint64_t(choice.grid_degree + 1) * std::uint64_t(choice.grid_degree + 1);
     MemoryNeed need = backend.distance_field_memory(vertices, faces, std::uint64_t(1) << 18);
-    need.host += points * 9 * sizeof(double);
+    need.host += grid_points(std::max(choice.grid_degree, surface_grid_degree(lmax))) * 9 * sizeof(double);
+    need.host += 3 * coefficients; // of the three grids
     return need;
   }
   // Paths and positions of the finest vertices, its faces, and caps of these.
   const std::uint64_t times = std::uint64_t(1) << (2 * choice.refinements);
   MemoryNeed need = backend.distance_flow_memory(vertices, faces, times * vertices);
   need.host += times * (vertices * 100 + faces * 120);
+  need.host += (std::uint64_t(choice.refinements) + 2) * coefficients; // each level's
+  // The six fields on their grid, and on the coarser one that shows its error.
+  need.host += grid_points(sheets_grid_degree(lmax)) * 6 * 2 * sizeof(double);
   return need;
 }
 
@@ -138,6 +150,16 @@ StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Back
 
 double flow_time(double given, const StarShapeTime& star) {
   return given > 0 ? given : star.upper;
+}
+
+void check_flow_time(double time, const Box& box) {
+  const double diagonal = (box.max - box.min).norm();
+  if (!(time >= 1e-9 * diagonal && time <= 1e4 * diagonal))
+    throw Error(Fault::bad_argument,
+                fmt::format("a time of {:.6g} for a body whose box has the diagonal {:.6g}: times go "
+                            "from 1e-9 of that to 1e4 times that, beyond which nothing but rounding "
+                            "is left",
+                            time, diagonal));
 }
 
 double parse_flow_time(const std::string& text) {

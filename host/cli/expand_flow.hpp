@@ -3,6 +3,7 @@
 
 #include "host/cli/expand_surfaces.hpp"
 #include "host/mesh/closed_surface.hpp"
+#include "host/mesh/geometry.hpp"
 
 namespace cowgpu::cli {
 
@@ -12,7 +13,8 @@ void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const Ma
                  const Vec3& origin, Backend& backend, Monitor& monitor, SurfaceResult& result);
 
 /// What that needs at most beside what other maps need.
-MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, std::uint64_t faces, const Backend& backend);
+MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, int lmax, std::uint64_t faces,
+                              const Backend& backend);
 
 /// The star-shape time of a mesh about an origin, as precisely as every command takes it.
 StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor);
@@ -23,6 +25,9 @@ FlowPoints flow_vertices(const ManifoldSurface& surface, double time, Backend& b
 
 /// The time a command flows for: the given one, or for 0 that bound of the star-shape time which is surely enough.
 double flow_time(double given, const StarShapeTime& star);
+
+/// Throws Error(bad_argument) for a time outside 1e-9 ... 1e4 diagonals of the box, in which distances resolve it.
+void check_flow_time(double time, const Box& box);
 
 /// Reads --time: "auto" (0), or a finite number above 0. Throws Error(bad_argument).
 double parse_flow_time(const std::string& text);

@@ -119,7 +119,7 @@ MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, c
   MemoryNeed need = expand_surface_memory(faces, choice.lmax, backend);
   need.host += (choice.maps.size() - 1) * 6 * 16 * SphereCoefficients::count(choice.lmax);
   if (choice.maps.back() == "flow") {
-    const MemoryNeed flow = expand_flow_memory(choice.flow, choice.paper, faces, backend);
+    const MemoryNeed flow = expand_flow_memory(choice.flow, choice.paper, choice.lmax, faces, backend);
     need.host += flow.host;
     need.device = std::max(need.device, flow.device);
   }

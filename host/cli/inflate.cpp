@@ -180,6 +180,9 @@ void run(const Options& options, const Common& common) {
   if (!options.picture.empty() && (!options.picture.ends_with(".png") || options.picture.size() == 4))
     throw Error(Fault::bad_argument, fmt::format("--picture {}: the name must end in .png", options.picture));
   SurfaceOutputs outputs(options.output, options.format, levels.size(), "level");
+  for (const Level& level : levels)
+    if (outputs.any()) refuse_same_file(options.mesh, outputs.path(level.key));
+  if (!options.picture.empty()) refuse_same_file(options.mesh, options.picture);
   if (outputs.any()) outputs.open(levels.front().key);
   std::unique_ptr<AtomicFile> picture;
   if (!options.picture.empty()) picture = std::make_unique<AtomicFile>(options.picture);
@@ -202,7 +205,16 @@ void run(const Options& options, const Common& common) {
   }
   const double longest = body.box.longest_side();
   for (Level& level : levels) {
-    if (level.distance == 0) level.distance = flow_time(0, *star);
+    if (level.distance == 0) {
+      if (star->lower == 0 && star->upper < 1e-4 * longest)
+        throw Error(
+            Fault::bad_argument,
+            fmt::format(
+                "--levels star: {} is star-shaped about ({:.6g}, {:.6g}, {:.6g}) as it is, or nearly, t* <= {:.3g}: "
+                "there is nothing to show; name levels by numbers, or another --origin",
+                body.surface.mesh().name, body.origin.x(), body.origin.y(), body.origin.z(), star->upper));
+      level.distance = flow_time(0, *star);
+    }
     if (!(level.distance >= 1e-4 * longest && level.distance <= 1e4 * longest))
       throw Error(
           Fault::bad_argument,

@@ -1,6 +1,7 @@
 // The man page and the shell completion, from the same option table as --help.
 #include "host/cli/commands.hpp"
 
+#include "host/io/mesh_catalogue.hpp"
 #include "host/mesh/builtin.hpp"
 #include "host/version.hpp"
 
@@ -128,10 +129,11 @@ std::string man_page(const CLI::App& app) {
 
 // Of commands, options, the words that an option takes, built-in bodies and file names.
 std::string bash_completion(const CLI::App& app) {
-  std::string bodies = "benchmark", paths, cases;
+  std::string bodies, paths, cases;
+  for (const CatalogueEntry& entry : mesh_catalogue()) bodies += entry.name + " ";
   for (const auto& body : builtin_bodies()) {
     const std::string usage(body.usage);
-    bodies += " builtin:" + usage.substr(0, usage.find_first_of(":@["));
+    bodies += "builtin:" + usage.substr(0, usage.find_first_of(":@[")) + " ";
   }
   for (const CLI::App* command : subcommands(app)) {
     paths += "|" + command->get_name() + "|";

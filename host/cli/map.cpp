@@ -99,10 +99,11 @@ SphereMap make_map(const Options& options, const ManifoldSurface& surface, Monit
 // The mesh's vertices where the flow brings them, seen from the origin.
 SphereMap make_flow_map(const Options& options, const Common& common, const ManifoldSurface& surface, Monitor& monitor,
                         FlowMapReport& report) {
+  const double given = parse_flow_time(options.time);
+  if (given > 0) check_flow_time(given, bounding_box(surface.vertices(), surface.faces()));
   const auto backend = make_cpu_backend(common.threads);
   report.origin = make_body(surface.closed(), parse_origin(options.origin), 1).origin;
   report.star = find_star_shape_time(surface.closed().mesh(), report.origin, *backend, monitor);
-  const double given = parse_flow_time(options.time);
   report.time_choice = given > 0 ? "given" : "auto";
   report.time = flow_time(given, report.star);
   const FlowPoints ends = flow_vertices(surface, report.time, *backend, monitor, report.points);
@@ -153,6 +154,13 @@ void run(const Options& options, const Common& common) {
     monitor.clear();
   }
   const double degree = std::abs(report.quality.degree);
+  if (file && options.method == "flow" && !(std::abs(degree - 1) <= 1e-6))
+    throw Error(
+        Fault::map_failed,
+        fmt::format("the flow brings the vertices so far apart that the triangles between them cover the sphere "
+                    "{:.3g} times instead of once, and {} was not written: cut the mesh finer, or take a shorter "
+                    "--time",
+                    degree, options.output));
   if (file && !(std::abs(degree - 1) <= 1e-6))
     throw Error(
         Fault::map_failed,
@@ -201,7 +209,7 @@ void add_map(CLI::App& app, Common& common) {
               "--disk-scale", options->disk_scale,
               "harmonic: the unit disk times S goes round the sphere (default: what brings half of the area to "
               "each hemisphere)")
-          ->check(CLI::PositiveNumber)
+          ->check(positive_number())
           ->type_name("S");
   CLI::Option* centre =
       command->add_flag("--centre", options->centre, "harmonic: move the mean direction by area to the centre");
@@ -222,7 +230,7 @@ void add_map(CLI::App& app, Common& common) {
                             ->add_option("--lambda", options->lambda,
                                          "stretch: weight of the stretch from the body to the sphere; 0.1 makes the "
                                          "shear less extreme")
-                            ->check(CLI::NonNegativeNumber)
+                            ->check(non_negative_number())
                             ->type_name("L")
                             ->capture_default_str();
   CLI::Option* converge =

@@ -192,7 +192,7 @@ void add_roundtrip(CLI::App& transform, Common& common) {
                   "(n x n)");
   command->get_option("--grid")->capture_default_str();
   command->add_option("--seed", options->seed, "Of the coefficients: std::mt19937_64, uniform in [-0.5, 0.5]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->capture_default_str();
   command->add_option("--runs", options->runs, "Timed runs after one to warm up; medians are shown")
       ->check(CLI::Range(1, 1000))

@@ -1,4 +1,5 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/expand_flow.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
@@ -77,6 +78,7 @@ void run(const Options& options, const Common& common) {
                 fmt::format("--origin {}: it must be three numbers X,Y,Z in mesh coordinates", options.origin));
   table.origin = *origin;
   std::unique_ptr<AtomicFile> file;
+  if (!to_stdout) refuse_same_file(options.mesh, options.output);
   if (layout != Layout::none && !to_stdout) file = std::make_unique<AtomicFile>(options.output);
 
   auto start = Clock::now();
@@ -86,6 +88,7 @@ void run(const Options& options, const Common& common) {
   table.mesh = mesh.name;
   table.sha256 = mesh.sha256;
   const Box box = bounding_box(surface);
+  if (options.time > 0) check_flow_time(options.time, box);
   table.time = options.time > 0 ? options.time : (box.max - box.min).norm();
   table.tolerance = options.tolerance;
   table.cut = cut_by_plane(mesh.vertices, mesh.faces, table.plane);
@@ -163,7 +166,7 @@ void add_streamlines(CLI::App& app, Common& common) {
       ->capture_default_str();
   command
       ->add_option("--time", options->time, "Time, which is length, to flow for (default: the bounding box's diagonal)")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->type_name("T");
   auto* count = command->add_option("--count", options->count, "Lines, evenly spaced along the cut")
                     ->check(CLI::Range(std::size_t(1), most_lines))
@@ -171,13 +174,13 @@ void add_streamlines(CLI::App& app, Common& common) {
                     ->capture_default_str();
   auto* spacing =
       command->add_option("--spacing", options->spacing, "Instead of their number: how far apart they start")
-          ->check(CLI::PositiveNumber)
+          ->check(positive_number())
           ->type_name("S")
           ->excludes(count);
   command
       ->add_option("--vertices", options->within,
                    "Instead of starts on the cut: the mesh's vertices no farther than W from the plane")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->type_name("W")
       ->excludes(count)
       ->excludes(spacing);

@@ -33,9 +33,10 @@ public:
   std::string write(const OutputKey& key, const TriangleSurface& surface, const std::vector<std::string>& facts,
                     const std::pair<std::string, double>& number);
 
-private:
+  /// The file's name.
   std::string path(const OutputKey& key) const;
 
+private:
   std::string output_, suffix_;
   bool folder_ = false;
   std::map<std::string, std::unique_ptr<AtomicFile>> files_;

@@ -33,6 +33,15 @@ void put_means(SurfaceExpansion& expansion) {
   expansion.mean_dphi = take(2);
 }
 
+// Far from the coordinates' zero points on the surface are rounded to what doubles hold there.
+void add_rounding(const Box& box, const SphereCoefficients& a, std::vector<std::array<double, 6>>& uncertainty) {
+  const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  const double length = std::sqrt(4 * std::numbers::pi) * largest * 0x1p-53;
+  const double angle = 4 * std::numbers::pi * largest * 0x1p-53 / a.at(0, 0, 0).real(); // at the mean distance
+  for (auto& fields : uncertainty)
+    for (std::size_t f = 0; f < 6; ++f) fields[f] += f == 1 || f == 2 ? angle : length;
+}
+
 SphereCoefficients with_means(const SurfaceExpansion& expansion) {
   SphereCoefficients all = expansion.coefficients;
   const double whole = std::sqrt(4 * std::numbers::pi);
@@ -129,6 +138,7 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
   const auto before = differences(coarser[0], coarser[1]).first;
   for (std::size_t l = 0; l < change.size(); ++l)
     for (std::size_t f = 0; f < 6; ++f) change[l][f] = std::max(change[l][f], before[l][f] / 4);
+  add_rounding(box, last, change);
   result.uncertainty = std::move(change);
 
   if (options.lmax >= 2 * slope_from) {
@@ -141,6 +151,10 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
     }
   }
   return result;
+}
+
+int sheets_grid_degree(int lmax) {
+  return std::max(sheet_grid_degree, surface_grid_degree(lmax));
 }
 
 SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, double tolerance,
@@ -171,7 +185,7 @@ SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, 
       return fields;
     };
     ExpandSurfaceOptions of_level = options;
-    if (options.grid_degree == 0) of_level.grid_degree = std::max(sheet_grid_degree, surface_grid_degree(options.lmax));
+    if (options.grid_degree == 0) of_level.grid_degree = sheets_grid_degree(options.lmax);
     of_level.estimate_aliasing = &level == &meshes.back(); // for the uncertainty
     result.expansion = expand_surface(sampler, of_level, backend, monitor, &result.report);
     result.sheets.push_back(sheets);
@@ -194,6 +208,7 @@ SheetExpansion expand_sheets(const RawMesh& mesh, double time, int refinements, 
         double& most = result.uncertainty[std::size_t(l)][std::size_t(f)];
         most = std::max(most, off);
       }
+  add_rounding(bounding_box(mesh.vertices, mesh.faces), last, result.uncertainty);
   put_means(result.expansion);
   return result;
 }

@@ -39,7 +39,7 @@ struct LevelSetExpansion {
   StarShapeTime star; ///< looked for even where the time is given
   double time = 0;    ///< T
   /// [degree][field]: the largest over m of what a coefficient is off by. With e the change from the grid of half the degree
-  /// and e' the one before it: e or e' / 4, whichever is more. The means of the angles, as coefficients, are among degree 0.
+  /// and e' the one before it: e or e' / 4, whichever is more, and what rounding of the coordinates does. The means of the angles, as coefficients, are among degree 0.
   std::vector<std::array<double, 6>> uncertainty;
   LevelSetSutures sutures;
   JumpReport averaged;            ///< on the finest grid
@@ -54,12 +54,16 @@ struct SheetExpansion {
   SurfaceExpansion expansion; ///< extrapolated
   ExpandSurfaceReport report; ///< of the finest
   /// [degree][field]: of the expansion, the largest over m. What the last two extrapolations differ by, half the last
-  /// refinement's change, and what the grid of half the degree gives differently, whichever is most.
+  /// refinement's change, and what the grid of half the degree gives differently, whichever is most, and what rounding of
+  /// the coordinates does.
   std::vector<std::array<double, 6>> uncertainty;
   std::vector<SphereCoefficients> levels; ///< of each refinement, means of the angles included
   std::vector<SheetReport> sheets;
   FlowReport flow; ///< of the finest mesh's vertices, which hold those of the others
 };
+
+/// Degree of the grid that sheets are counted on unless the options name another: 1024, or surface_grid_degree(lmax).
+int sheets_grid_degree(int lmax);
 
 /// The sutures make the error fall by about half with each refinement, so a is extrapolated as 2 a_k - a_(k-1). The flow
 /// goes by events at `tolerance`. Of the options, grid_degree 0 is max(1024, 2 lmax). Throws Error(bad_argument) for refinements outside 1 ... 5 or time <= 0.

@@ -55,7 +55,7 @@ std::vector<Vec3> level_set_points(DistanceField& field, const Vec3& low, const 
       for (std::size_t k = 0; k < rays.size(); ++k) {
         Ray ray = rays[k];
         const double d = closest.distance[k], gap = d - level;
-        const double slope = (places[k] - closest.point[k]).dot(ray.direction) / d;
+        const double slope = d > 0 ? (places[k] - closest.point[k]).dot(ray.direction) / d : 0;
         (gap > 0 ? ray.high : ray.low) = ray.radius;
         const bool pinned = ray.high - ray.low <= 4e-16 * outside;
         if (std::abs(gap) <= enough || pinned || pass + 1 == most_passes) {

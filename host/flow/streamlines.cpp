@@ -1,7 +1,6 @@
 #include "host/flow/streamlines.hpp"
 
 #include "host/error.hpp"
-#include "host/flow/flow_map.hpp"
 #include "host/mesh/triangle_surface.hpp"
 
 #include <Eigen/Geometry>
@@ -228,7 +227,7 @@ Streamlines streamlines(std::span<const Vec3> vertices, std::span<const Face> fa
   Streamlines found;
   found.lines = flow.flow(starts.places, starts.normals, options, monitor, &found.report);
   found.distances = backend.distance_field(vertices, faces)->closest(found.lines.path, {}, monitor).distance;
-  found.directions = direction_map(found.lines.positions, origin).positions;
+  for (const Vec3& end : found.lines.positions) found.directions.push_back((end - origin).stableNormalized());
   return found;
 }
 

@@ -59,12 +59,12 @@ StreamlineStarts starts_near(const Plane& plane, double within, std::span<const 
 struct Streamlines {
   FlowPoints lines;              ///< paths kept: corners, where the line turns or a step of a slide ends
   std::vector<double> distances; ///< at each corner, negative inside
-  std::vector<Vec3> directions;  ///< unit vectors from the origin to the ends: the map's points on the sphere
+  std::vector<Vec3> directions; ///< unit vectors from the origin to the ends, on the sphere; 0 for an end at the origin
   FlowReport report;
 };
 
-/// Flows the starts by events. `options.streamlines` is taken as true. Throws Error(map_failed) for a line that ends at
-/// the origin, and what DistanceFlow and DistanceField throw.
+/// Flows the starts by events. `options.streamlines` is taken as true. Throws what DistanceFlow and
+/// DistanceField throw.
 Streamlines streamlines(std::span<const Vec3> vertices, std::span<const Face> faces, const StreamlineStarts& starts,
                         const Vec3& origin, FlowOptions options, DistanceFlow& flow, Backend& backend,
                         Monitor& monitor);

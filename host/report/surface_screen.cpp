@@ -13,6 +13,15 @@ std::string coefficient_text(std::complex<double> value) {
   return fmt::format("{:+.4f}{:+.4f}i", value.real(), value.imag());
 }
 
+std::string scaled_text(std::complex<double> value) {
+  return fmt::format("{:+.4e}{:+.4e}i", value.real(), value.imag());
+}
+
+// Lengths of bodies that are very small or large in their unit do not fit four decimals.
+bool fits_decimals(double length) {
+  return length >= 0.05 && length < 1e4;
+}
+
 std::string fields_text(const std::array<double, 6>& values, std::size_t fields) {
   std::string text;
   for (std::size_t f = 0; f < fields; ++f)
@@ -135,12 +144,18 @@ void write_surface_screen(const SurfaceResult& result, const std::function<void(
     sink(fmt::format("  uncertain among degrees 0 to {}: {}\n", std::min(a.lmax, 8),
                      fields_text(largest_of(result.flow->uncertainty, 8), 6)));
   std::string head = fmt::format("  {:>2} {:>2}", "l", "m");
-  for (const char* field : surface_field_names) head += fmt::format("  {:<16}", field);
+  const int last = std::min(a.lmax, 3);
+  const bool decimals = fits_decimals(a.at(0, 0, 0).real()); // the mean distance tells the scale of lengths
+  const auto scaled = [&](int f) { return !decimals && f != 1 && f != 2; };
+  for (int f = 0; f < a.fields; ++f)
+    head += fmt::format("  {:<{}}", surface_field_names[std::size_t(f)], scaled(f) ? 24 : 16);
   sink(head + "\n");
-  for (int l = 0; l <= std::min(a.lmax, 3); ++l)
+  for (int l = 0; l <= last; ++l)
     for (int m = 0; m <= l; ++m) {
       std::string line = fmt::format("  {:>2} {:>2}", l, m);
-      for (int f = 0; f < a.fields; ++f) line += fmt::format("  {:<16}", coefficient_text(a.at(f, l, m)));
+      for (int f = 0; f < a.fields; ++f)
+        line += scaled(f) ? fmt::format("  {:<24}", scaled_text(a.at(f, l, m)))
+                          : fmt::format("  {:<16}", coefficient_text(a.at(f, l, m)));
       sink(line + "\n");
     }
   if (result.beside_paper) write_beside_paper(result, sink);
