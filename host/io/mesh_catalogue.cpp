@@ -1,9 +1,9 @@
 #include "host/io/mesh_catalogue.hpp"
 
-#include "generated/mesh_catalogue_json.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/file.hpp"
+#include "host/io/mesh_catalogue_json.hpp"
 #include "host/io/sha256.hpp"
 
 #include <fmt/format.h>
