@@ -1,3 +1,4 @@
+#include "host/cli/coefficient_outputs.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/expand_flow.hpp"
 #include "host/cli/expand_surfaces.hpp"
@@ -77,12 +78,6 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-void check_outputs(const Options& options) {
-  for (const std::string& path : options.outputs)
-    if (!ends_with(path, ".json") && !ends_with(path, ".csv"))
-      throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .json or .csv", path));
-}
-
 std::uint64_t all_json_bytes(const ExpansionChoice& choice) {
   return (choice.mass ? json_bytes(choice.lmax) : 0) + choice.maps.size() * surface_json_bytes(choice.lmax);
 }
@@ -154,8 +149,8 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
 
 void run(const Options& options, Common& common) {
   Stopwatch watch;
-  check_outputs(options);
   ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.map_file, options.lmax);
+  for (const std::string& path : options.outputs) check_expansion_output(path, choice.mass, choice.maps.size());
   choice.flow = flow_choice(options, choice);
   const OriginChoice origin = parse_origin(options.origin);
   // Before long work: a result that cannot be written should fail now.
@@ -195,14 +190,8 @@ void run(const Options& options, Common& common) {
     say(fmt::format("cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n",
                     all_json_bytes(choice) / 1000000));
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const Sink sink = [&](std::string_view text) {
-      check_stop(ConsoleMonitor(ProgressStyle::none));
-      files[i]->write(text);
-    };
-    if (ends_with(options.outputs[i], ".json"))
-      write_json(result, sink);
-    else
-      write_csv(result, sink);
+    check_stop(ConsoleMonitor(ProgressStyle::none));
+    write_expansion(result, coefficient_format(options.outputs[i]), *files[i]);
     files[i]->commit();
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.outputs[i]));
   }
@@ -294,7 +283,8 @@ void add_expand(CLI::App& app, Common& common) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the sample")->capture_default_str();
   command->add_flag("--json", options->json, "The result as JSON on stdout (data/schemas/cowgpu.result.v1.json)");
-  command->add_option("-o,--output", options->outputs, "Write FILE.json or FILE.csv; can be repeated")
+  command->add_option("-o,--output", options->outputs, "Write FILE.json or FILE.csv (all of it), or one expansion as FILE.gfc (ICGEM), FILE.sh (SHTOOLS) or "
+                                         "FILE.nc (netCDF); can be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
   command->add_flag("--dry-run", options->dry_run, "Print the plan and the memory it needs, and stop");

@@ -1,0 +1,18 @@
+// The expansions in a result as coefficients that every file format takes.
+#pragma once
+
+#include "host/coefficient_set.hpp"
+#include "host/report/result.hpp"
+
+namespace cowgpu {
+
+/// The mass multipoles, complex, orthonormal, with the Condon-Shortley phase.
+CoefficientSet mass_set(const ExpandResult& result);
+
+/// The six fields of a surface, in the same convention.
+CoefficientSet surface_set(const ExpandResult& result, const SurfaceResult& surface);
+
+/// Where all of them come from.
+Provenance provenance_of(const ExpandResult& result);
+
+} // namespace cowgpu
