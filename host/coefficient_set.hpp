@@ -27,6 +27,9 @@ enum class CoefficientKind {
 std::string_view name(CoefficientKind kind);
 std::optional<CoefficientKind> kind_named(std::string_view word);
 
+/// The length and mass unit of a body whose units nobody stated.
+inline constexpr std::string_view mesh_length_unit = "of the mesh", mesh_mass_unit = "density times cubed length";
+
 /// Newton's constant in m^3 / (kg s^2), CODATA 2018.
 inline constexpr double gravitational_constant_si = 6.6743e-11;
 
@@ -55,7 +58,7 @@ struct CoefficientSet {
   std::optional<double> reference_radius; ///< R in the length unit; of multipoles and potentials
   std::optional<Vec3> origin;             ///< of multipoles, potentials and surfaces, in mesh coordinates
   std::string origin_kind;                ///< "centre of mass", "mesh", "given", or empty
-  std::string length_unit, mass_unit;     ///< "m", "kg", or empty: the mesh's, and density times its cube
+  std::string length_unit, mass_unit;     ///< "m", "kg"; the two above; empty: not known
   std::optional<double> density, mass;
   std::optional<double> gravitational_constant; ///< G that went into gm, in the units above and seconds
   std::optional<double> gm;                     ///< of potentials

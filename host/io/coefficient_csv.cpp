@@ -80,7 +80,11 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
     return [surface](const std::string& field) { return field.starts_with(surface + "_"); };
   };
   if (of.empty() || (of == "mass" && mass && set.fields == 1)) {
-    if (mass && set.fields == 1) set.kind = CoefficientKind::multipoles;
+    if (mass && set.fields == 1) {
+      set.kind = CoefficientKind::multipoles;
+      set.length_unit = mesh_length_unit;
+      set.mass_unit = mesh_mass_unit;
+    }
     if (mass && set.fields > 1) {
       if (set.reference_radius) set.notes.push_back(expansion_note(metadata.at("reference_radius").text));
       set.reference_radius.reset();
@@ -101,6 +105,7 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
   for (std::size_t f = 0; f < wanted.size(); ++f) {
     const std::string& field = set.names[std::size_t(wanted[f])];
     chosen.names[f] = of == "mass" ? field : field.substr(of.size() + 1);
+    if (of != "mass") chosen.units[f] = chosen.names[f] == "f_dtheta" || chosen.names[f] == "f_dphi" ? "radian" : "length";
     for (int m = 0; m <= set.lmax; ++m)
       for (int l = m; l <= set.lmax; ++l) {
         chosen.first[chosen.index(int(f), l, m)] = set.first[set.index(wanted[f], l, m)];
@@ -108,8 +113,10 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
       }
   }
   Metadata own;
+  chosen.length_unit = mesh_length_unit;
   if (of == "mass") {
     chosen.kind = CoefficientKind::multipoles;
+    chosen.mass_unit = mesh_mass_unit;
     for (const char* key : {"reference_radius", "density", "origin"})
       if (metadata.contains(key)) own[key] = metadata.at(key);
   } else {

@@ -123,8 +123,10 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
   set.units.resize(set.names.size());
   Metadata metadata;
   if (expansion.contains("origin")) metadata["origin"] = origin_text(name, expansion);
+  set.length_unit = mesh_length_unit;
   if (mass) {
     set.kind = CoefficientKind::multipoles;
+    set.mass_unit = mesh_mass_unit;
     metadata["reference_radius"] = {number_text(result_json::number(name, expansion, "reference_radius")), 0};
     if (expansion.contains("density"))
       metadata["density"] = {number_text(result_json::number(name, expansion, "density")), 0};

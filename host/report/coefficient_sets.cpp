@@ -32,6 +32,8 @@ CoefficientSet mass_set(const ExpandResult& result) {
   set.origin = q.origin;
   set.origin_kind = result.body.origin_kind;
   set.density = q.density;
+  set.length_unit = mesh_length_unit;
+  set.mass_unit = mesh_mass_unit;
   set.provenance = provenance_of(result);
   return set;
 }
@@ -51,6 +53,7 @@ CoefficientSet surface_set(const ExpandResult& result, const SurfaceResult& surf
   }
   set.origin = expansion.origin;
   set.origin_kind = surface.origin_kind;
+  set.length_unit = mesh_length_unit;
   set.provenance = provenance_of(result);
   set.remarks = {{"map", surface.map.method}, {"recipe", surface.recipe}};
   for (const auto& [field, mean] : {std::pair("f_dtheta", expansion.mean_dtheta), std::pair("f_dphi", expansion.mean_dphi)}) {

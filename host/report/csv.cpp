@@ -1,4 +1,6 @@
+#include "host/io/coefficient_metadata.hpp"
 #include "host/io/number.hpp"
+#include "host/report/coefficient_sets.hpp"
 #include "host/report/result.hpp"
 #include "host/version.hpp"
 
@@ -53,7 +55,9 @@ void append_pair(std::string& text, std::complex<double> value) {
 
 void write_csv(const ExpandResult& result, const Sink& sink) {
   std::string text = "# cowgpu " + std::string(version) + ", " + result.created + "\n";
-  text += "# " + mesh_line(result.body.surface.mesh()) + "\n# device: " + device_line(result.device) + "\n";
+  CoefficientSet facts(0, 1);
+  facts.provenance = provenance_of(result);
+  text += comment_lines(facts, {"lmax"}) + "# " + mesh_line(result.body.surface.mesh()) + "\n# device: " + device_line(result.device) + "\n";
   std::string columns = "l,m";
   if (result.has_mass) {
     text += mass_comments(result);

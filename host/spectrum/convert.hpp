@@ -11,12 +11,12 @@ namespace cowgpu {
 
 /// What is asked for; the rest stays as it is.
 struct ConversionTarget {
-  std::optional<CoefficientKind> kind;
-  std::optional<Form> form;
-  std::optional<Normalisation> normalisation;
-  std::optional<Phase> phase;
-  std::optional<double> reference_radius;
-  std::optional<int> lmax; ///< at most the set's
+  std::optional<CoefficientKind> kind = {};
+  std::optional<Form> form = {};
+  std::optional<Normalisation> normalisation = {};
+  std::optional<Phase> phase = {};
+  std::optional<double> reference_radius = {};
+  std::optional<int> lmax = {}; ///< at most the set's
 };
 
 /// The numbers multiplied by the quotient of both conventions, by (R / R')^l and, between multipoles and potentials, by
