@@ -16,7 +16,7 @@ namespace cowgpu {
 /// What coefficients are of. Each kind names a field on the unit sphere, f = sum a_lm Y_lm (Y_lm as in
 /// SphereCoefficients); the numbers in a convention are coefficients of that field (host/convention.hpp).
 enum class CoefficientKind {
-  field,      ///< a_lm of any field
+  field, ///< a_lm of any field
   multipoles, ///< mass multipoles: a_lm = conj(Q_lm) / R^l, Q_lm as in Coefficients; the complex form holds Q_lm / R^l itself
   /// the gravitational potential V = GM/r sum_lm (R/r)^l (C_lm cos m phi + S_lm sin m phi) K_lm P_lm(cos theta) of geodesy:
   ///   a_lm = 4 pi conj(Q_lm) / ((2l + 1) M R^l), f = V R / GM at r = R
@@ -35,12 +35,12 @@ inline constexpr double gravitational_constant_si = 6.6743e-11;
 
 /// Where coefficients come from. Empty: not known.
 struct Provenance {
-  std::string program;       ///< and its version
-  std::string created;       ///< UTC, ISO 8601
-  std::string command;       ///< as typed
-  std::string mesh;          ///< name
-  std::string mesh_sha256;   ///< of the mesh's file
-  std::string history;       ///< the commands that converted it since, separated by "; "
+  std::string program;     ///< and its version
+  std::string created;     ///< UTC, ISO 8601
+  std::string command;     ///< as typed
+  std::string mesh;        ///< name
+  std::string mesh_sha256; ///< of the mesh's file
+  std::string history;     ///< the commands that converted it since, separated by "; "
 };
 
 /// Coefficients with everything needed to read them. The numbers are those of the file, bit for bit.

@@ -48,8 +48,8 @@ CoefficientSet read_text_as_gfc(const std::string& path, const std::string& text
 void check_potential(const std::string& mesh_name, int lmax) {
   const TemporaryFolder folder;
   const std::string path = folder / "body.gfc";
-  const ProgramRun run = run_program({"expand", mesh_name, "--lmax", std::to_string(lmax), "--density", "2.5", "--device",
-                                      "cpu", "--origin", "0.01,0.02,0.03", "-q", "-o", path});
+  const ProgramRun run = run_program({"expand", mesh_name, "--lmax", std::to_string(lmax), "--density", "2.5",
+                                      "--device", "cpu", "--origin", "0.01,0.02,0.03", "-q", "-o", path});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const GravityModel model = read_gravity_model(path);
@@ -128,7 +128,7 @@ TEST_CASE("a .gfc file reads back to the last bit, with everything it says", "[g
     set.mass_unit = "kg";
     set.names = {"mass"};
     set.provenance = {"cowgpu 1", "2026-01-01T00:00:00Z", "cowgpu expand 'begin_of_head end_of_head radius norm'",
-                      "a b.off", std::string(64, 'a'), "one; two"};
+                      "a b.off",  std::string(64, 'a'),   "one; two"};
     set.remarks = {{"rotation", "by 30 degrees"}};
     AtomicFile file(folder / "m.gfc");
     write_coefficient_set(set, CoefficientFormat::gfc, file);
@@ -187,7 +187,8 @@ TEST_CASE("gravity models that are wrong are named errors with file and line", "
       {"file-syntax", 8, replaced(good, "radius 0.63781363e7\n", "radius -1\n"), "above 0"},
       {"file-syntax", 8, replaced(good, "radius 0.63781363e7\n", "radius inf\n"), "finite"},
       {"file-syntax", 11, replaced(good, "fully_normalized", "halfway"), "halfway"},
-      {"file-format", 5, replaced(good, "===\nproduct_type gravity_field", "===\nproduct_type topography"), "topography"},
+      {"file-format", 5, replaced(good, "===\nproduct_type gravity_field", "===\nproduct_type topography"),
+       "topography"},
   };
   for (const Bad& bad : all) {
     const std::string found = fault_of([&] { read_text_as_gfc(path, bad.text); });

@@ -28,7 +28,8 @@ TEST_CASE("a box far away attracts like its mass with its second and fourth mome
 TEST_CASE("a fine ball attracts like its mass outside, and as a ball does inside", "[polyhedron]") {
   const RawMesh ball = icosphere(4);
   long double volume = 0;
-  for (const auto& f : ball.faces) volume += ball.vertices[f[0]].dot(ball.vertices[f[1]].cross(ball.vertices[f[2]])) / 6;
+  for (const auto& f : ball.faces)
+    volume += ball.vertices[f[0]].dot(ball.vertices[f[1]].cross(ball.vertices[f[2]])) / 6;
   const PolyhedronGravity outside = polyhedron_gravity(ball, LongVec3(0, 3, 4));
   CHECK(std::fabs(outside.potential * 5 / volume - 1) <= 1e-7L);
   CHECK((outside.acceleration * 25 / volume + LongVec3(0, 0.6L, 0.8L)).norm() <= 1e-7L);

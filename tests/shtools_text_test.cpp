@@ -54,8 +54,8 @@ TEST_CASE("SHTOOLS text as pyshtools writes it is read, with and without its hea
   CHECK(field.first[field.index(0, 1, 1)] == -0.1);
   CHECK(field.second[field.index(0, 1, 1)] == 3);
   // SHGravCoeffs.to_file: '{:.16e}, {:.16e}, {:.16e}, {:d}' of r0, gm, omega, lmax
-  const CoefficientSet gravity = read_as_text(
-      path, "1.7380000000000000e+06, 4.9028000661637961e+12, 0.0000000000000000e+00, 1\n" + rows);
+  const CoefficientSet gravity =
+      read_as_text(path, "1.7380000000000000e+06, 4.9028000661637961e+12, 0.0000000000000000e+00, 1\n" + rows);
   CHECK(gravity.kind == CoefficientKind::potential);
   CHECK(gravity.reference_radius == 1738000.0);
   CHECK(gravity.gm == 4.9028000661637961e12);
@@ -68,12 +68,13 @@ TEST_CASE("SHTOOLS text as pyshtools writes it is read, with and without its hea
   CHECK(later.notes.size() == 3);
 }
 
-TEST_CASE("every format reads back the doubles that were written, with what they are of", "[shtools][coefficient-file]") {
+TEST_CASE("every format reads back the doubles that were written, with what they are of",
+          "[shtools][coefficient-file]") {
   const TemporaryFolder folder;
   for (const auto kind : {CoefficientKind::field, CoefficientKind::multipoles, CoefficientKind::potential})
     for (const Form form : {Form::real, Form::complex})
-      for (const auto n : {Normalisation::orthonormal, Normalisation::four_pi, Normalisation::schmidt,
-                           Normalisation::unnormalised})
+      for (const auto n :
+           {Normalisation::orthonormal, Normalisation::four_pi, Normalisation::schmidt, Normalisation::unnormalised})
         for (const Phase phase : {Phase::condon_shortley, Phase::none})
           for (const int fields : {1, 3})
             for (const char* name : {"c.json", "c.csv", "c.nc", "c.gfc", "c.sh"}) {
@@ -204,8 +205,8 @@ TEST_CASE("a .sh file opens in pyshtools: comments, then the header line of a po
     lines.emplace_back(std::istream_iterator<std::string>(words), std::istream_iterator<std::string>());
   }
   REQUIRE(lines.size() == 11);
-  CHECK(lines[0] == std::vector<std::string>{"2.0000000000000000e+00", "1.0000000000000001e-01",
-                                             "0.0000000000000000e+00", "3"});
+  CHECK(lines[0] ==
+        std::vector<std::string>{"2.0000000000000000e+00", "1.0000000000000001e-01", "0.0000000000000000e+00", "3"});
   std::size_t at = 1;
   for (int l = 0; l <= 3; ++l)
     for (int m = 0; m <= l; ++m, ++at) {

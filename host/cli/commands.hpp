@@ -3,6 +3,7 @@
 
 #include "host/backend.hpp"
 #include "host/cli/console.hpp"
+#include "host/convention.hpp"
 #include "host/mesh/body.hpp"
 #include "host/types.hpp"
 
@@ -75,6 +76,9 @@ OriginChoice parse_origin(const std::string& text);
 
 /// Adds --normalisation and --phase with their words; the texts say of what.
 void add_convention_options(CLI::App& command, std::string& normalisation, std::string& phase, const char* of_what);
+
+/// "orthonormal, with Condon-Shortley phase".
+std::string convention_text(Convention convention);
 
 /// The help text of a MESH argument.
 std::string mesh_help();

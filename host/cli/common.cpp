@@ -101,6 +101,11 @@ void add_convention_options(CLI::App& command, std::string& normalisation, std::
       ->check(CLI::IsMember({"cs", "none"}));
 }
 
+std::string convention_text(Convention convention) {
+  return fmt::format("{}, {} Condon-Shortley phase", name(convention.normalisation),
+                     convention.phase == Phase::condon_shortley ? "with" : "without");
+}
+
 std::string mesh_help() {
   std::string text = "An OFF file, `benchmark` (libigl's cow.off), or a built-in body:";
   for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);

@@ -35,8 +35,7 @@ ConversionTarget target_of(const Options& options, const CoefficientSet& set) {
   if (text && set.kind == CoefficientKind::multipoles && !target.kind) target.kind = CoefficientKind::potential;
   if (!target.form && format != CoefficientFormat::json && format != CoefficientFormat::csv) target.form = Form::real;
   const bool geodesy = target.kind == CoefficientKind::potential && set.kind == CoefficientKind::multipoles;
-  if (!target.normalisation &&
-      (geodesy || (gfc && set.convention.normalisation != Normalisation::unnormalised)))
+  if (!target.normalisation && (geodesy || (gfc && set.convention.normalisation != Normalisation::unnormalised)))
     target.normalisation = Normalisation::four_pi;
   if (!target.phase && (geodesy || gfc)) target.phase = Phase::none;
   return target;
@@ -55,10 +54,11 @@ EulerAngles angles_of(const Options& options) {
 void state_convention(const Options& options, CoefficientSet& set) {
   if (options.input_normalisation.empty() && options.input_phase.empty()) return;
   if (set.convention_stated)
-    throw Error(Fault::bad_argument,
-                fmt::format("--input-normalisation and --input-phase are for files that do not say their convention; {} "
-                            "says {} and {}",
-                            options.input, name(set.convention.normalisation), name(set.convention.phase)));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--input-normalisation and --input-phase are for files that do not say their convention; {} "
+                    "says {} and {}",
+                    options.input, name(set.convention.normalisation), name(set.convention.phase)));
   if (!options.input_normalisation.empty())
     set.convention.normalisation = *normalisation_named(options.input_normalisation);
   if (!options.input_phase.empty()) set.convention.phase = *phase_named(options.input_phase);
@@ -74,8 +74,7 @@ void state_si(CoefficientSet& set) {
 
 std::string described(const CoefficientSet& set) {
   std::string text =
-      fmt::format("{} to degree {}, {}, {}, {} Condon-Shortley phase", name(set.kind), set.lmax, name(set.form),
-                  name(set.convention.normalisation), set.convention.phase == Phase::none ? "without" : "with");
+      fmt::format("{} to degree {}, {}, {}", name(set.kind), set.lmax, name(set.form), convention_text(set.convention));
   if (set.fields > 1) text = fmt::format("{} fields: ", set.fields) + text;
   if (set.reference_radius) text += fmt::format(", R = {}", *set.reference_radius);
   if (set.gm) text += fmt::format(", GM = {}", *set.gm);

@@ -84,23 +84,22 @@ void write_screen(const Options& options, const CoefficientDifference& result, c
   write_stdout(fmt::format("A: {}\nB: {}\n", options.first, options.second));
   for (const std::string& note : notes) write_stdout("note: " + note + "\n");
   for (const std::string& sentence : result.unlike) write_stdout("unlike: " + sentence + "\n");
-  write_stdout(fmt::format("compared as {}, {}, {} Condon-Shortley phase{}, to degree {}\n", name(result.kind),
-                           name(result.convention.normalisation),
-                           result.convention.phase == Phase::none ? "without" : "with",
-                           result.reference_radius > 0 ? fmt::format(", R = {}", result.reference_radius) : "",
-                           result.lmax));
+  write_stdout(
+      fmt::format("compared as {}, {}{}, to degree {}\n", name(result.kind), convention_text(result.convention),
+                  result.reference_radius > 0 ? fmt::format(", R = {}", result.reference_radius) : "", result.lmax));
   for (const FieldDifference& field : result.fields) {
     write_stdout(fmt::format("\n{}: |A| {:.6e}, |A - B| {:.3e}, relative {:.3e}\n", field.name, field.total_norm,
                              field.total, field.total_relative()));
-    write_stdout(fmt::format("  {:>4}  {:>13}  {:>10}  {:>10}  {:>7}\n", "l", "|A_l|", "|A - B|", "relative", "worst m"));
+    write_stdout(
+        fmt::format("  {:>4}  {:>13}  {:>10}  {:>10}  {:>7}\n", "l", "|A_l|", "|A - B|", "relative", "worst m"));
     for (std::size_t l = 0; l < field.norm.size(); ++l)
       write_stdout(fmt::format("  {:>4}  {:>13.6e}  {:>10.3e}  {:>10.3e}  {:>7}\n", l, field.norm[l],
                                field.difference[l], field.relative(l), field.worst_order[l]));
   }
   write_stdout(fmt::format("\nworst degree over the norms beside it: {:.3e}{}\n", result.worst(),
-                           !options.tolerance                       ? ""
+                           !options.tolerance                     ? ""
                            : result.worst() <= *options.tolerance ? ", within the tolerance"
-                                                                    : ", beyond the tolerance"));
+                                                                  : ", beyond the tolerance"));
 }
 
 void run(const Options& options, const Common& common) {

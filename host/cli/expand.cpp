@@ -283,8 +283,11 @@ void add_expand(CLI::App& app, Common& common) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the sample")->capture_default_str();
   command->add_flag("--json", options->json, "The result as JSON on stdout (data/schemas/cowgpu.result.v1.json)");
-  command->add_option("-o,--output", options->outputs, "Write FILE.json or FILE.csv (all of it), or one expansion as FILE.gfc (ICGEM), FILE.sh (SHTOOLS) or "
-                                         "FILE.nc (netCDF); can be repeated")
+  command
+      ->add_option(
+          "-o,--output", options->outputs,
+          "Write FILE.json or FILE.csv (all of it), or one expansion as FILE.gfc (ICGEM), FILE.sh (SHTOOLS) or "
+          "FILE.nc (netCDF); can be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
   command->add_flag("--dry-run", options->dry_run, "Print the plan and the memory it needs, and stop");

@@ -49,11 +49,6 @@ std::string grid_text(const SphereGrid& grid) {
                      grid.lmax);
 }
 
-std::string convention_text(Convention convention) {
-  return fmt::format("{}, {} Condon-Shortley phase", name(convention.normalisation),
-                     convention.phase == Phase::condon_shortley ? "with" : "without");
-}
-
 std::string fields_text(std::size_t n) {
   return n == 1 ? "1 field" : fmt::format("{} fields", n);
 }

@@ -105,7 +105,8 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
   for (std::size_t f = 0; f < wanted.size(); ++f) {
     const std::string& field = set.names[std::size_t(wanted[f])];
     chosen.names[f] = of == "mass" ? field : field.substr(of.size() + 1);
-    if (of != "mass") chosen.units[f] = chosen.names[f] == "f_dtheta" || chosen.names[f] == "f_dphi" ? "radian" : "length";
+    if (of != "mass")
+      chosen.units[f] = chosen.names[f] == "f_dtheta" || chosen.names[f] == "f_dphi" ? "radian" : "length";
     for (int m = 0; m <= set.lmax; ++m)
       for (int l = m; l <= set.lmax; ++l) {
         chosen.first[chosen.index(int(f), l, m)] = set.first[set.index(wanted[f], l, m)];

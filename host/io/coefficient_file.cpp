@@ -18,9 +18,9 @@ CoefficientFormat coefficient_format(const std::filesystem::path& path) {
   if (suffix == ".nc") return CoefficientFormat::netcdf;
   if (suffix == ".gfc") return CoefficientFormat::gfc;
   if (suffix == ".sh") return CoefficientFormat::shtools;
-  throw Error(Fault::bad_argument,
-              fmt::format("{}: the name must end in .nc (netCDF), .csv, .json, .gfc (ICGEM) or .sh (SHTOOLS)",
-                          path.string()));
+  throw Error(
+      Fault::bad_argument,
+      fmt::format("{}: the name must end in .nc (netCDF), .csv, .json, .gfc (ICGEM) or .sh (SHTOOLS)", path.string()));
 }
 
 CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std::string& of) {
@@ -38,10 +38,15 @@ CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std
 std::string not_held(const CoefficientSet& set, CoefficientFormat format) {
   const bool gfc = format == CoefficientFormat::gfc, shtools = format == CoefficientFormat::shtools;
   if (gfc && set.kind == CoefficientKind::field)
-    return "a .gfc file holds the gravity field of a body, and these are coefficients of other fields; .nc, .csv, .json "
+    return "a .gfc file holds the gravity field of a body, and these are coefficients of other fields; .nc, .csv, "
+           ".json "
            "and .sh hold them";
   if ((gfc || shtools) && set.kind == CoefficientKind::multipoles)
     return "mass multipoles go into .json, .csv and .nc; .gfc and .sh hold the coefficients of the potential";
+  if ((gfc || shtools) && set.kind == CoefficientKind::potential && !(set.gm && set.reference_radius))
+    return "coefficients of a potential without GM or reference radius, which .gfc and .sh ask for; .json, .csv and "
+           ".nc "
+           "hold them";
   if ((gfc || shtools) && set.fields > 1)
     return fmt::format("{} fields, and a .sh file holds one; choose with --field, or take .nc, .csv or .json",
                        set.fields);
@@ -51,9 +56,10 @@ std::string not_held(const CoefficientSet& set, CoefficientFormat format) {
     return "a .gfc file has no Condon-Shortley phase; .nc, .csv, .json and .sh can have it";
   if (gfc && set.convention.normalisation != Normalisation::four_pi &&
       set.convention.normalisation != Normalisation::unnormalised)
-    return fmt::format("a .gfc file is 4pi (fully normalised) or unnormalised, and not {}; .nc, .csv, .json and .sh can "
-                       "be",
-                       name(set.convention.normalisation));
+    return fmt::format(
+        "a .gfc file is 4pi (fully normalised) or unnormalised, and not {}; .nc, .csv, .json and .sh can "
+        "be",
+        name(set.convention.normalisation));
   return "";
 }
 
@@ -86,6 +92,8 @@ CoefficientFile read_coefficients(const std::filesystem::path& path) {
     append_number(r, *set.reference_radius);
     file.notes.push_back(expansion_note(r));
   }
+  if (set.kind == CoefficientKind::potential)
+    file.notes.push_back("these are coefficients of a gravitational potential V: the field is V R / GM at r = R");
   return file;
 }
 

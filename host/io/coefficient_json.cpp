@@ -116,8 +116,8 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
   CoefficientSet set;
   const bool mass = !expansion.contains("fields");
   set.form = Form::complex;
-  set.names =
-      mass ? std::vector<std::string>{"mass"} : words_of(name, result_json::member(name, expansion, "fields"), "fields");
+  set.names = mass ? std::vector<std::string>{"mass"}
+                   : words_of(name, result_json::member(name, expansion, "fields"), "fields");
   take_values(result_json::coefficients(name, expansion, field_count(name, set.names.size()), largest_file_degree),
               set);
   set.units.resize(set.names.size());
@@ -173,9 +173,10 @@ CoefficientSet read_json_coefficients(const std::filesystem::path& path, const s
                             "`cowgpu expand -o FILE.json` or `cowgpu convert` wrote",
                             name));
   if (!of.empty())
-    throw Error(Fault::bad_argument, fmt::format("--of {}: {} holds no expansions to choose from; the .json and .csv of "
-                                                 "`cowgpu expand` do",
-                                                 of, name));
+    throw Error(Fault::bad_argument,
+                fmt::format("--of {}: {} holds no expansions to choose from; the .json and .csv of "
+                            "`cowgpu expand` do",
+                            of, name));
   return read_own(name, all);
 }
 

@@ -197,6 +197,9 @@ bool take_metadata(const Metadata& metadata, const std::string& file, Coefficien
   read.origin(set);
   read.text("length_unit", set.length_unit);
   read.text("mass_unit", set.mass_unit);
+  if (set.kind != CoefficientKind::field && !set.reference_radius)
+    throw Error(Fault::file_syntax,
+                fmt::format("{}: the file is of kind {} and says no reference_radius", file, name(set.kind)));
   read.number("density", set.density, false);
   read.number("mass", set.mass, false);
   read.number("gravitational_constant", set.gravitational_constant, true);

@@ -33,7 +33,8 @@ std::string comment_lines(const CoefficientSet& set, const std::vector<std::stri
 void take_comment(std::string_view line, std::size_t number, Metadata& metadata);
 
 /// Puts what is there into `set`, whose lmax and fields are set, and normalisation and phase where both are there; false
-/// where one is missing. `file` opens messages. Throws Error(file_syntax) for texts that mean nothing.
+/// where one is missing. `file` opens messages. Throws Error(file_syntax) for texts that mean nothing, and for a body's
+/// coefficients without reference_radius.
 bool take_metadata(const Metadata& metadata, const std::string& file, CoefficientSet& set);
 
 /// "FILE:LINE", or "FILE" where there is no line.

@@ -158,9 +158,9 @@ void write_netcdf_coefficients(const CoefficientSet& set, AtomicFile& file) {
     out.attribute(id, "csphase", std::int64_t(set.convention.phase == Phase::condon_shortley ? -1 : 1));
     fields.push_back(id);
     if (set.fields > 1) out.attribute(id, "field", std::int64_t(fields.size()));
-    if (set.kind == CoefficientKind::potential) {
-      out.attribute(id, "GM", set.gm.value_or(0));
-      out.attribute(id, "r0", set.reference_radius.value_or(1));
+    if (set.kind == CoefficientKind::potential && set.gm && set.reference_radius) {
+      out.attribute(id, "GM", *set.gm);
+      out.attribute(id, "r0", *set.reference_radius);
     }
   }
   out.attribute(NetcdfWriter::global, "cowgpu", version);

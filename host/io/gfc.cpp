@@ -51,8 +51,7 @@ Head read_head(WordLines& lines) {
 // A keyword's text; the line that messages name is then that of the keyword.
 const std::string& required(const Head& head, WordLines& lines, std::string_view keyword) {
   const auto found = head.values.find(keyword);
-  if (found == head.values.end())
-    lines.fail(Fault::file_syntax, fmt::format("the head has no line '{} ...'", keyword));
+  if (found == head.values.end()) lines.fail(Fault::file_syntax, fmt::format("the head has no line '{} ...'", keyword));
   lines.number = head.lines.find(keyword)->second;
   return found->second;
 }
@@ -102,8 +101,9 @@ std::vector<Row> read_data(WordLines& lines, int lmax, bool& errors) {
     const std::string_view key = lines.words[0];
     for (const char* moving : {"gfct", "trnd", "dot", "asin", "acos"})
       if (key == moving)
-        lines.fail(Fault::file_format,
-                   fmt::format("a term '{}', which varies with time; only static models (lines 'gfc') can be read", key));
+        lines.fail(
+            Fault::file_format,
+            fmt::format("a term '{}', which varies with time; only static models (lines 'gfc') can be read", key));
     if (key != "gfc") lines.fail(Fault::file_syntax, fmt::format("a line 'gfc ...' expected, found '{}'", shown(key)));
     if (lines.words.size() < 5)
       lines.fail(Fault::file_truncated,
@@ -150,15 +150,15 @@ void fill(CoefficientSet& set, const std::vector<Row>& rows, int lmax, WordLines
   for (int l = 0; l <= lmax; ++l)
     for (int m = 0; m <= l; ++m) {
       while (next < seen.size() && seen[next] < std::pair(l, m)) ++next;
-      if (there.empty() ? next < seen.size() && seen[next] == std::pair(l, m) : there[set.index(0, l, m)] != 0) continue;
+      if (there.empty() ? next < seen.size() && seen[next] == std::pair(l, m) : there[set.index(0, l, m)] != 0)
+        continue;
       if (l > 1)
         lines.fail(Fault::file_truncated,
                    fmt::format("the file ends without a line 'gfc {} {} ...'; max_degree is {}", l, m, lmax));
       missing = true;
       if (l == 0) set.first[set.index(0, 0, 0)] = 1;
     }
-  if (missing)
-    set.notes.push_back("rows of degrees 0 and 1 that the file leaves out were taken as C_00 = 1 and 0");
+  if (missing) set.notes.push_back("rows of degrees 0 and 1 that the file leaves out were taken as C_00 = 1 and 0");
 }
 
 } // namespace
@@ -184,10 +184,12 @@ void write_gfc(const CoefficientSet& set, AtomicFile& file) {
   text += comment_lines(set, {"lmax", "normalisation", "phase", "reference_radius", "gm"});
   for (auto at = text.find("of_head"); at != std::string::npos; at = text.find("of_head", at)) text[at + 2] = '-';
   const bool si = set.length_unit == "m" && set.mass_unit == "kg";
-  text += "# C_lm + i S_lm = (-1)^m sqrt((2 - delta_m0) 4 pi) Q_lm / ((2l + 1) M R^l); axes of the mesh, theta from +z,\n"
-          "# phi from +x towards +y, about the origin above\n";
+  text +=
+      "# C_lm + i S_lm = (-1)^m sqrt((2 - delta_m0) 4 pi) Q_lm / ((2l + 1) M R^l); axes of the mesh, theta from +z,\n"
+      "# phi from +x towards +y, about the origin above\n";
   if (!si)
-    text += "# lengths are in the unit of the mesh, the mass is density times its cube, and GM below is the mass times the\n"
+    text += "# lengths are in the unit of the mesh, the mass is density times its cube, and GM below is the mass times "
+            "the\n"
             "# constant above\n";
   std::string model = set.provenance.mesh;
   std::replace_if(
@@ -197,8 +199,8 @@ void write_gfc(const CoefficientSet& set, AtomicFile& file) {
   append_number(text, set.gm.value_or(0));
   text += fmt::format("\n{:<24}", "radius");
   append_number(text, set.reference_radius.value_or(1));
-  text += fmt::format("\n{:<24}{}\n{:<24}no\n{:<24}{}\n{:<24}unknown\n\nkey l m C S\nend_of_head\n", "max_degree", set.lmax,
-                      "errors", "norm",
+  text += fmt::format("\n{:<24}{}\n{:<24}no\n{:<24}{}\n{:<24}unknown\n\nkey l m C S\nend_of_head\n", "max_degree",
+                      set.lmax, "errors", "norm",
                       set.convention.normalisation == Normalisation::unnormalised ? "unnormalized" : "fully_normalized",
                       "tide_system");
   file.write(text);

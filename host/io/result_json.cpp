@@ -57,8 +57,8 @@ const json& expansion(const std::string& name, const json& result, const std::st
     std::string there;
     if (expansions.is_object())
       for (const auto& [key, value] : expansions.items()) there += (there.empty() ? "" : ", ") + shown(key);
-    throw Error(Fault::bad_argument,
-                fmt::format("--of {}: {} has no such expansion; there is {}", of, name, there.empty() ? "none" : there));
+    throw Error(Fault::bad_argument, fmt::format("--of {}: {} has no such expansion; there is {}", of, name,
+                                                 there.empty() ? "none" : there));
   }
   if (expansions.is_object() && !expansions.empty() && !expansions.contains("mass"))
     throw Error(Fault::file_format,

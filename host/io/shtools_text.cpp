@@ -22,7 +22,8 @@ struct Row {
 };
 
 bool all_digits(std::string_view word) {
-  return !word.empty() && word.size() < 6 && std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return !word.empty() && word.size() < 6 &&
+         std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 bool is_comment(const WordLines& lines) {
@@ -120,10 +121,9 @@ CoefficientSet read_shtools_text(const std::filesystem::path& path) {
       set.second[set.index(0, degree, order)] = rows[at].s;
     }
   if (ours) metadata.erase("form");
-  const CoefficientKind kind = set.kind;
-  if (!ours || !take_metadata(metadata, path.string(), set)) assume_defaults(set);
-  if (set.kind != kind)
+  if (ours && !header && metadata.contains("kind"))
     lines.fail(Fault::file_truncated, "the file says that it is of a potential and has no line r0, gm, omega, lmax");
+  if (!ours || !take_metadata(metadata, path.string(), set)) assume_defaults(set);
   if (first_degree > 0) {
     if (set.kind == CoefficientKind::potential) set.first[0] = 1;
     set.notes.push_back(fmt::format("degrees below {}, which the file leaves out, were taken as 0{}", first_degree,

@@ -56,7 +56,8 @@ CoefficientSet surface_set(const ExpandResult& result, const SurfaceResult& surf
   set.length_unit = mesh_length_unit;
   set.provenance = provenance_of(result);
   set.remarks = {{"map", surface.map.method}, {"recipe", surface.recipe}};
-  for (const auto& [field, mean] : {std::pair("f_dtheta", expansion.mean_dtheta), std::pair("f_dphi", expansion.mean_dphi)}) {
+  for (const auto& [field, mean] :
+       {std::pair("f_dtheta", expansion.mean_dtheta), std::pair("f_dphi", expansion.mean_dphi)}) {
     std::string text;
     append_number(text, mean);
     set.remarks.emplace_back(std::string("removed_mean_") + field, text);

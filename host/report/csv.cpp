@@ -56,8 +56,11 @@ void append_pair(std::string& text, std::complex<double> value) {
 void write_csv(const ExpandResult& result, const Sink& sink) {
   std::string text = "# cowgpu " + std::string(version) + ", " + result.created + "\n";
   CoefficientSet facts(0, 1);
+  facts.length_unit = mesh_length_unit;
+  if (result.has_mass) facts.mass_unit = mesh_mass_unit;
   facts.provenance = provenance_of(result);
-  text += comment_lines(facts, {"lmax"}) + "# " + mesh_line(result.body.surface.mesh()) + "\n# device: " + device_line(result.device) + "\n";
+  text += comment_lines(facts, {"lmax"}) + "# " + mesh_line(result.body.surface.mesh()) +
+          "\n# device: " + device_line(result.device) + "\n";
   std::string columns = "l,m";
   if (result.has_mass) {
     text += mass_comments(result);

@@ -37,10 +37,9 @@ private:
 };
 
 [[noreturn]] void refuse(const CoefficientSet& from, const CoefficientSet& to, int l, int m) {
-  const bool unnormalised =
-      from.convention.normalisation != to.convention.normalisation &&
-      (from.convention.normalisation == Normalisation::unnormalised ||
-       to.convention.normalisation == Normalisation::unnormalised);
+  const bool unnormalised = from.convention.normalisation != to.convention.normalisation &&
+                            (from.convention.normalisation == Normalisation::unnormalised ||
+                             to.convention.normalisation == Normalisation::unnormalised);
   throw Error(Fault::bad_argument,
               fmt::format("the coefficient of degree {} and order {} fits no double after the conversion{}", l, m,
                           unnormalised ? ": unnormalised coefficients leave the range of a double near degree 150; "
@@ -81,6 +80,7 @@ void change_kind(const CoefficientSet& set, CoefficientSet& result, CoefficientK
                 fmt::format("these are coefficients of kind {}, and {} is another thing; only multipoles and the "
                             "potential of a body come from one another",
                             name(set.kind), name(kind)));
+  if (!set.reference_radius) throw Error(Fault::bad_argument, "these coefficients do not say their reference radius");
   const double mass = mass_of(set);
   if (!(mass != 0))
     throw Error(Fault::bad_argument, "the body's mass is 0, and coefficients of the potential are divided by it; the "

@@ -21,12 +21,12 @@ void check_origins(const CoefficientSet& a, const CoefficientSet& b) {
   if (!a.origin || !b.origin) return;
   const double apart = (*a.origin - *b.origin).norm(), scale = a.reference_radius.value_or(a.origin->norm());
   if (apart > 1e-12 * std::max(scale, a.origin->norm()))
-    throw Error(Fault::bad_argument,
-                fmt::format("the coefficients are about the points ({:.9g}, {:.9g}, {:.9g}) and ({:.9g}, {:.9g}, "
-                            "{:.9g}), {:.3g} apart, and cannot be compared; translation is not offered: expand the body "
-                            "again with --origin",
-                            a.origin->x(), a.origin->y(), a.origin->z(), b.origin->x(), b.origin->y(), b.origin->z(),
-                            apart));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("the coefficients are about the points ({:.9g}, {:.9g}, {:.9g}) and ({:.9g}, {:.9g}, "
+                    "{:.9g}), {:.3g} apart, and cannot be compared; translation is not offered: expand the body "
+                    "again with --origin",
+                    a.origin->x(), a.origin->y(), a.origin->z(), b.origin->x(), b.origin->y(), b.origin->z(), apart));
 }
 
 class Unlike {
@@ -93,7 +93,8 @@ FieldDifference compare_field(const CoefficientSet& a, const CoefficientSet& b, 
   }
   for (int l = 0; l <= lmax; ++l) {
     double scale = 0;
-    for (int k = std::max(0, l - 2); k <= std::min(lmax, l + 2); ++k) scale = std::max(scale, field.norm[std::size_t(k)]);
+    for (int k = std::max(0, l - 2); k <= std::min(lmax, l + 2); ++k)
+      scale = std::max(scale, field.norm[std::size_t(k)]);
     const double here = quotient(field.difference[std::size_t(l)], scale);
     if (here <= field.worst) continue;
     field.worst = here;
@@ -121,8 +122,8 @@ double CoefficientDifference::worst() const {
 CoefficientDifference difference(const CoefficientSet& a, const CoefficientSet& b, Convention convention) {
   if (a.fields != b.fields)
     throw Error(Fault::bad_argument,
-                fmt::format("{} fields in the first file and {} in the second; choose one with --field or --of", a.fields,
-                            b.fields));
+                fmt::format("{} fields in the first file and {} in the second; choose one with --field or --of",
+                            a.fields, b.fields));
   check_origins(a, b);
   CoefficientDifference result;
   result.convention = convention;

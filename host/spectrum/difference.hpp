@@ -30,10 +30,10 @@ struct FieldDifference {
 struct CoefficientDifference {
   Convention convention; ///< of the norms
   CoefficientKind kind = CoefficientKind::field;
-  int lmax = 0;                       ///< the smaller of both
-  double reference_radius = 0;        ///< of multipoles and potentials
+  int lmax = 0;                ///< the smaller of both
+  double reference_radius = 0; ///< of multipoles and potentials
   std::vector<FieldDifference> fields;
-  std::vector<std::string> unlike;    ///< sentences: what else differs between the sets
+  std::vector<std::string> unlike; ///< sentences: what else differs between the sets
 
   double worst() const; ///< of all fields
 };

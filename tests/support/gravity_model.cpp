@@ -61,9 +61,8 @@ long double GravityModel::potential(long double x, long double y, long double z)
       degree[l] += here * (c[l][m] * std::cos(Real(m) * phi) + s[l][m] * std::sin(Real(m) * phi));
       const Real k = Real(l + 1), mm = Real(m);
       const Real a = std::sqrt((2 * k - 1) * (2 * k + 1) / ((k - mm) * (k + mm)));
-      const Real b = l == m ? 0
-                            : std::sqrt((2 * k + 1) * (k + mm - 1) * (k - mm - 1) /
-                                        ((k - mm) * (k + mm) * (2 * k - 3)));
+      const Real b =
+          l == m ? 0 : std::sqrt((2 * k + 1) * (k + mm - 1) * (k - mm - 1) / ((k - mm) * (k + mm) * (2 * k - 3)));
       const Real after = a * u * here - b * before;
       before = here;
       here = after;

@@ -11,9 +11,9 @@ using LongVec3 = Eigen::Matrix<long double, 3, 1>;
 
 /// At one point, for G * density = 1.
 struct PolyhedronGravity {
-  long double potential = 0; ///< U = integral of 1 / |x - p|, positive
+  long double potential = 0;                ///< U = integral of 1 / |x - p|, positive
   LongVec3 acceleration = LongVec3::Zero(); ///< its gradient
-  long double laplacian = 0; ///< -4 pi inside, 0 outside
+  long double laplacian = 0;                ///< -4 pi inside, 0 outside
 };
 
 /// Werner and Scheeres, Exterior gravitation of a polyhedron derived and compared with harmonic and mascon gravitation
