@@ -13,46 +13,6 @@ namespace {
 
 using Real = long double;
 
-// k_lm of one order m after the other, l from m on. The quotient of factorials leaves the range of a long double near
-// degree 870; it is 0 then, and check() finds no place for the coefficient.
-class Factors {
-public:
-  Factors(Convention convention, int lmax) : convention_(convention), degree_(std::size_t(lmax) + 1, 1) {
-    const Real sphere = 4 * std::numbers::pi_v<Real>;
-    for (int l = 0; l <= lmax; ++l) {
-      Real& n = degree_[std::size_t(l)];
-      if (convention.normalisation == Normalisation::four_pi)
-        n = 1 / std::sqrt(sphere);
-      else if (convention.normalisation != Normalisation::orthonormal)
-        n = std::sqrt(Real(2 * l + 1) / sphere);
-    }
-  }
-
-  void start(int m) {
-    if (m > 0) first_ /= Real(2 * m - 1) * Real(2 * m);
-    quotient_ = first_;
-    order_ = m;
-    sign_ = convention_.phase == Phase::none && m % 2 ? -1 : 1;
-    if (m > 0) sign_ *= std::numbers::sqrt2_v<Real>;
-  }
-
-  // For l = m, m + 1, ...
-  Real next(int l) {
-    const Real k = sign_ * degree_[std::size_t(l)];
-    if (convention_.normalisation != Normalisation::unnormalised) return k;
-    const Real here = quotient_;
-    quotient_ *= Real(l + 1 - order_) / Real(l + 1 + order_);
-    return k * std::sqrt(order_ > 0 ? 2 * here : here);
-  }
-
-private:
-  Convention convention_;
-  std::vector<Real> degree_;
-  Real first_ = 1, quotient_ = 1; // 1 / (2m)!, (l - m)! / (l + m)!
-  Real sign_ = 1;
-  int order_ = 0;
-};
-
 [[noreturn]] void refuse(Convention convention, int l, int m) {
   throw Error(Fault::bad_argument,
               fmt::format("the coefficient of degree {} and order {} fits no double between the {} convention and the "
@@ -85,6 +45,10 @@ std::string_view name(Normalisation normalisation) {
   return "unknown";
 }
 
+std::string_view name(Form form) {
+  return form == Form::real ? "real" : "complex";
+}
+
 std::string_view name(Phase phase) {
   return phase == Phase::condon_shortley ? "cs" : "none";
 }
@@ -104,13 +68,51 @@ std::optional<Phase> phase_named(std::string_view word) {
   return {};
 }
 
+std::optional<Form> form_named(std::string_view word) {
+  for (const Form form : {Form::real, Form::complex})
+    if (word == name(form)) return form;
+  return {};
+}
+
+long double order_factor(Convention convention, Form form, int m) {
+  const Real sign = convention.phase == Phase::none && m % 2 ? -1 : 1;
+  if (m == 0 || form == Form::complex) return sign;
+  return sign * (convention.normalisation == Normalisation::unnormalised ? 2 : std::numbers::sqrt2_v<Real>);
+}
+
+DegreeFactors::DegreeFactors(Normalisation normalisation, int lmax)
+    : quotients_(normalisation == Normalisation::unnormalised), degree_(std::size_t(lmax) + 1, 1) {
+  const Real sphere = 4 * std::numbers::pi_v<Real>;
+  for (int l = 0; l <= lmax; ++l) {
+    Real& n = degree_[std::size_t(l)];
+    if (normalisation == Normalisation::four_pi)
+      n = 1 / std::sqrt(sphere);
+    else if (normalisation != Normalisation::orthonormal)
+      n = std::sqrt(Real(2 * l + 1) / sphere);
+  }
+}
+
+void DegreeFactors::start(int m) {
+  if (m > 0) first_ /= Real(2 * m - 1) * Real(2 * m);
+  quotient_ = first_;
+  order_ = m;
+}
+
+long double DegreeFactors::next(int l) {
+  const Real n = degree_[std::size_t(l)];
+  if (!quotients_) return n;
+  const Real here = quotient_;
+  quotient_ *= Real(l + 1 - order_) / Real(l + 1 + order_);
+  return n * std::sqrt(here);
+}
+
 RealCoefficients to_real(const SphereCoefficients& coefficients, Convention convention) {
   RealCoefficients real(coefficients.lmax, coefficients.fields, convention);
-  Factors factors(convention, coefficients.lmax);
+  DegreeFactors factors(convention.normalisation, coefficients.lmax);
   for (int m = 0; m <= coefficients.lmax; ++m) {
     factors.start(m);
     for (int l = m; l <= coefficients.lmax; ++l) {
-      const Real k = factors.next(l);
+      const Real k = order_factor(convention, Form::real, m) * factors.next(l);
       for (int f = 0; f < coefficients.fields; ++f) {
         const std::complex<double> a = coefficients.at(f, l, m);
         const std::size_t at = real.index(f, l, m);
@@ -124,11 +126,11 @@ RealCoefficients to_real(const SphereCoefficients& coefficients, Convention conv
 
 SphereCoefficients to_complex(const RealCoefficients& real) {
   SphereCoefficients coefficients(real.lmax, real.fields);
-  Factors factors(real.convention, real.lmax);
+  DegreeFactors factors(real.convention.normalisation, real.lmax);
   for (int m = 0; m <= real.lmax; ++m) {
     factors.start(m);
     for (int l = m; l <= real.lmax; ++l) {
-      const Real k = factors.next(l);
+      const Real k = order_factor(real.convention, Form::real, m) * factors.next(l);
       for (int f = 0; f < real.fields; ++f) {
         const std::size_t at = real.index(f, l, m);
         const double c = real.cosine[at], s = m > 0 ? real.sine[at] : 0;

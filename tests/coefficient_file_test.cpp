@@ -1,5 +1,6 @@
 #include "host/io/coefficient_file.hpp"
 
+#include "host/spectrum/convert.hpp"
 #include "host/spectrum/roundtrip.hpp"
 #include "tests/support/fields.hpp"
 #include "tests/support/run_program.hpp"
@@ -373,4 +374,85 @@ TEST_CASE("damaged netCDF coefficients are read or named errors, never a crash",
       errors += named;
     }
   CHECK(errors > 50);
+}
+
+TEST_CASE("every prefix and many damaged copies of our JSON and complex CSV are read or named errors",
+          "[coefficient-file]") {
+  const TemporaryFolder folder;
+  CoefficientSet set = set_of(random_coefficients(3, 1, 11), {});
+  set.kind = CoefficientKind::multipoles;
+  set.form = Form::complex;
+  set.reference_radius = 2;
+  set.origin = Vec3(1, 2, 3);
+  set.provenance = {"cowgpu", "now", "cowgpu expand", "cow", "0f", "cowgpu convert"};
+  set.remarks = {{"rotation", "none"}};
+  for (const char* suffix : {"c.json", "c.csv"}) {
+    const std::string path = folder / suffix;
+    AtomicFile file(path);
+    write_coefficient_set(set, coefficient_format(path), file);
+    file.commit();
+    const std::string good = read_text(path);
+    REQUIRE(read_coefficient_set(path).first == set.first);
+    int read = 0;
+    for (std::size_t length = 0; length < good.size(); ++length) {
+      write_text(path, good.substr(0, length));
+      const std::string found = fault_of([&] { read_coefficient_set(path); });
+      INFO(suffix << " " << length << ": " << found);
+      CHECK((found == "none" || found.rfind("file-", 0) == 0));
+      read += found == "none";
+    }
+    CHECK(read <= 25); // a CSV's last number, digit by digit
+    for (std::uint32_t seed = 0; seed < 1000; ++seed) {
+      write_text(path, damaged(good, seed));
+      const std::string found = fault_of([&] { read_coefficient_set(path); });
+      INFO(suffix << " " << seed << ": " << found);
+      CHECK((found == "none" || found.rfind("file-", 0) == 0));
+    }
+  }
+}
+
+TEST_CASE("coefficients of our JSON that contradict themselves are named errors", "[coefficient-file]") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "c.json";
+  const std::string good =
+      R"({"schema": "cowgpu.coefficients.v1", "kind": "potential", "form": "real", "lmax": 1, "fields": ["v"],)"
+      R"( "units": ["m"], "normalisation": "4pi", "phase": "none", "reference_radius": 2, "gm": 3, "mass": 4,)"
+      R"( "origin": [1, 2, 3], "provenance": {"mesh": "cow"}, "remarks": {"a": "b"},)"
+      R"( "coefficients": [[0, 0, 1, 0], [1, 0, 2, 0], [1, 1, 3, 4.5]]})";
+  write_text(path, good);
+  const CoefficientSet set = read_coefficient_set(path);
+  CHECK(set.second[set.index(0, 1, 1)] == 4.5);
+  CHECK(set.gm == 3);
+  const std::vector<std::string> all = {
+      replaced(good, "cowgpu.coefficients.v1", "cowgpu.coefficients.v2"),
+      replaced(good, "\"potential\"", "\"milk\""),
+      replaced(good, "\"potential\"", "7"),
+      replaced(good, "\"kind\"", "\"sort\""),
+      replaced(good, "\"form\"", "\"shape\""),
+      replaced(good, "\"real\"", "\"unreal\""),
+      replaced(good, "\"4pi\"", "\"5pi\""),
+      replaced(good, "\"phase\"", "\"face\""),
+      replaced(good, "\"none\"", "\"some\""),
+      replaced(good, "\"reference_radius\": 2", "\"reference_radius\": 0"),
+      replaced(good, "\"reference_radius\": 2", "\"reference_radius\": \"2\""),
+      replaced(good, "\"reference_radius\": 2, ", ""),
+      replaced(good, "[1, 2, 3]", "[1, 2]"),
+      replaced(good, "[1, 2, 3]", "[1, 2, \"3\"]"),
+      replaced(good, "[\"v\"]", "[]"),
+      replaced(good, "[\"v\"]", "[\"v\", \"w\"]"),
+      replaced(good, "[\"v\"]", "\"v\""),
+      replaced(good, "[\"m\"]", "[\"m\", \"m\"]"),
+      replaced(good, "{\"mesh\": \"cow\"}", "[]"),
+      replaced(good, "{\"mesh\": \"cow\"}", "{\"mesh\": 1}"),
+      replaced(good, "{\"a\": \"b\"}", "{\"a\": 1}"),
+      replaced(good, "{\"a\": \"b\"}", "7"),
+      replaced(good, "[1, 1, 3, 4.5]", "[1, 1, 3]"),
+      replaced(good, "[1, 0, 2, 0]", "[1, 0, 2, 1]"),
+  };
+  for (const std::string& text : all) {
+    write_text(path, text);
+    const std::string found = fault_of([&] { read_coefficient_set(path); });
+    INFO(text << "\n" << found);
+    CHECK_THAT(found, StartsWith("file-") && Contains(path));
+  }
 }

@@ -223,5 +223,28 @@ for arguments in (["--count", "7"], ["--plane", "1,1,0,0.1", "--spacing", "0.5"]
 assert len(drawn["lines"]) == 8
 drawn["lines"][0]["path"][0] = [0, 1, 2]
 refuses(streamlines, drawn, "a corner without a distance")
+coefficients, difference = load_schema("coefficients"), load_schema("diff")
+with tempfile.TemporaryDirectory() as folder:
+    source, surface, same = (os.path.join(folder, name) for name in ("cow.csv", "cow.nc", "same.json"))
+    expand("builtin:cow@1", "--lmax", "9", "--device", "cpu", "--json", "-o", source)
+    expand("builtin:cow@1", "--of", "smooth", "--lmax", "9", "--device", "cpu", "--json", "-o", surface)
+    for arguments in (
+        [source],
+        [source, "--kind", "potential", "--si", "--form", "real", "--rotate", "10,20,30"],
+        [surface, "--normalisation", "unnormalised", "--phase", "none"],
+    ):
+        subprocess.run([program, "convert", arguments[0], same, *arguments[1:]], capture_output=True, check=True)
+        with open(same, encoding="utf-8") as file:
+            document = json.load(file)
+        jsonschema.validate(document, coefficients)
+        assert [row[:2] for row in document["coefficients"]] == [[l, m] for l in range(10) for m in range(l + 1)]
+        assert all(len(row) == 2 + 2 * len(document["fields"]) for row in document["coefficients"])
+        found = output_of("diff", same, arguments[0], "--json", *(["--tolerance", "1e-15"] if len(arguments) < 6 else []))
+        jsonschema.validate(found, difference)
+        assert found["passed"] is (True if len(arguments) < 6 else None) and len(found["fields"]) == len(document["fields"])
+    document["phase"] = "full moon"
+    refuses(coefficients, document, "a phase of no kind")
+    found["fields"][0]["degrees"][0]["norm"] = -1
+    refuses(difference, found, "a negative norm")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
-print("37 documents and 5 files passed")
+print("40 documents and 8 files passed")

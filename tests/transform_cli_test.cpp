@@ -82,7 +82,7 @@ TEST_CASE("a field in closed form has its coefficients", "[transform-cli]") {
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const std::string text = read_text(folder / "c.csv");
-  CHECK_THAT(text, Contains("# normalisation unnormalised\n# phase none\nl,m,C,S\n"));
+  CHECK_THAT(text, Contains("# normalisation unnormalised\n# phase none\n# fields dipole\nl,m,C,S\n"));
   const CoefficientFile c = read_coefficients(folder / "c.csv");
   const RealCoefficients real = to_real(c.coefficients, c.convention);
   CHECK(real.cosine[real.index(0, 0, 0)] == Approx(2).epsilon(1e-14));

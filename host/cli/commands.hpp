@@ -3,6 +3,7 @@
 
 #include "host/backend.hpp"
 #include "host/cli/console.hpp"
+#include "host/convention.hpp"
 #include "host/mesh/body.hpp"
 #include "host/types.hpp"
 
@@ -36,6 +37,8 @@ void add_render(CLI::App& app, Common& common);
 void add_bench(CLI::App& app, Common& common);
 void add_transform(CLI::App& app, Common& common);
 void add_spectrum(CLI::App& app, Common& common);
+void add_convert(CLI::App& app, Common& common);
+void add_diff(CLI::App& app, Common& common);
 void add_map(CLI::App& app, Common& common);
 void add_reconstruct(CLI::App& app, Common& common);
 void add_inflate(CLI::App& app, Common& common);
@@ -54,7 +57,10 @@ CLI::Validator non_negative_number();
 /// Adds `roundtrip` to the command `transform`.
 void add_roundtrip(CLI::App& transform, Common& common);
 
-/// Adds --device, --threads, --progress and --quiet.
+/// Adds --threads, --progress and --quiet.
+void add_run_options(CLI::App& command, Common& common);
+
+/// Adds --device and those.
 void add_common_options(CLI::App& command, Common& common);
 
 /// Opens what --device names: "cpu", or a Vulkan device. "auto" falls back to the CPU path where there is no loader, no
@@ -76,6 +82,12 @@ std::optional<Vec3> parse_point(std::string_view text);
 
 /// Reads --origin: com, mesh or X,Y,Z. Throws Error(bad_argument).
 OriginChoice parse_origin(const std::string& text);
+
+/// Adds --normalisation and --phase with their words; the texts say of what.
+void add_convention_options(CLI::App& command, std::string& normalisation, std::string& phase, const char* of_what);
+
+/// "orthonormal, with Condon-Shortley phase".
+std::string convention_text(Convention convention);
 
 /// The help text of a MESH argument.
 std::string mesh_help();

@@ -43,6 +43,10 @@ void add_common_options(CLI::App& command, Common& common) {
                   "Where to compute: auto (the best Vulkan device, else the CPU), cpu, a number or a part of a name "
                   "from `cowgpu devices`")
       ->capture_default_str();
+  add_run_options(command, common);
+}
+
+void add_run_options(CLI::App& command, Common& common) {
   command.add_option("--threads", common.threads, "Threads of the CPU path (0: all)")
       ->check(CLI::Range(0U, 4096U))
       ->capture_default_str();
@@ -111,6 +115,20 @@ OriginChoice parse_origin(const std::string& text) {
   if (const auto point = parse_point(text)) return {"given", *point};
   throw Error(Fault::bad_argument,
               fmt::format("--origin {}: it must be com, mesh or three numbers X,Y,Z in mesh coordinates", text));
+}
+
+void add_convention_options(CLI::App& command, std::string& normalisation, std::string& phase, const char* of_what) {
+  command
+      .add_option("--normalisation", normalisation,
+                  fmt::format("{}: orthonormal, 4pi (geodesy), schmidt, unnormalised (to about degree 150)", of_what))
+      ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
+  command.add_option("--phase", phase, fmt::format("{}: cs (Condon-Shortley) or none", of_what))
+      ->check(CLI::IsMember({"cs", "none"}));
+}
+
+std::string convention_text(Convention convention) {
+  return fmt::format("{}, {} Condon-Shortley phase", name(convention.normalisation),
+                     convention.phase == Phase::condon_shortley ? "with" : "without");
 }
 
 std::string mesh_help() {

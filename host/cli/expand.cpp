@@ -1,4 +1,5 @@
 #include "host/cli/body_options.hpp"
+#include "host/cli/coefficient_outputs.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/expand_flow.hpp"
 #include "host/cli/expand_surfaces.hpp"
@@ -79,12 +80,6 @@ Verify parse_verify(const std::string& text) {
 
 bool ends_with(const std::string& text, std::string_view end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-void check_outputs(const Options& options) {
-  for (const std::string& path : options.outputs)
-    if (!ends_with(path, ".json") && !ends_with(path, ".csv"))
-      throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .json or .csv", path));
 }
 
 std::uint64_t all_json_bytes(const ExpansionChoice& choice) {
@@ -171,8 +166,8 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
 
 void run(const Options& options, Common& common) {
   Stopwatch watch;
-  check_outputs(options);
   ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.map_file, options.lmax);
+  for (const std::string& path : options.outputs) check_expansion_output(path, choice.mass, choice.maps.size());
   choice.flow = flow_choice(options, choice);
   // Before long work: a result that cannot be written should fail now.
   std::vector<std::unique_ptr<AtomicFile>> files;
@@ -212,14 +207,8 @@ void run(const Options& options, Common& common) {
     say(fmt::format("cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n",
                     all_json_bytes(choice) / 1000000));
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const Sink sink = [&](std::string_view text) {
-      check_stop(ConsoleMonitor(ProgressStyle::none));
-      files[i]->write(text);
-    };
-    if (ends_with(options.outputs[i], ".json"))
-      write_json(result, sink);
-    else
-      write_csv(result, sink);
+    check_stop(ConsoleMonitor(ProgressStyle::none));
+    write_expansion(result, coefficient_format(options.outputs[i]), *files[i]);
     files[i]->commit();
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.outputs[i]));
   }
@@ -311,7 +300,11 @@ void add_expand(CLI::App& app, Common& common) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the sample")->capture_default_str();
   command->add_flag("--json", options->json, "The result as JSON on stdout (data/schemas/cowgpu.result.v1.json)");
-  command->add_option("-o,--output", options->outputs, "Write FILE.json or FILE.csv; can be repeated")
+  command
+      ->add_option(
+          "-o,--output", options->outputs,
+          "Write FILE.json or FILE.csv (all of it), or one expansion as FILE.gfc (ICGEM), FILE.sh (SHTOOLS) or "
+          "FILE.nc (netCDF); can be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
   command->add_flag("--dry-run", options->dry_run, "Print the plan and the memory it needs, and stop");

@@ -28,6 +28,8 @@ int run(int argc, char** argv) {
   cli::add_validate(app, common);
   cli::add_transform(app, common);
   cli::add_spectrum(app, common);
+  cli::add_convert(app, common);
+  cli::add_diff(app, common);
   cli::add_map(app, common);
   cli::add_reconstruct(app, common);
   cli::add_inflate(app, common);

@@ -125,7 +125,7 @@ void add_spectrum(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand("spectrum", "Power per degree of coefficients in a file");
   command
       ->add_option("FILE", options->input,
-                   "Coefficients: .nc (as pyshtools writes them), .csv, or the .json or .csv of `cowgpu expand -o`")
+                   "Coefficients: .nc (as pyshtools writes them), .csv, .json, .gfc (ICGEM) or .sh (SHTOOLS)")
       ->required();
   command->add_flag("--cross", options->cross, "For two fields: their cross spectrum too");
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.spectrum.v1.json)");

@@ -49,11 +49,6 @@ std::string grid_text(const SphereGrid& grid) {
                      grid.lmax);
 }
 
-std::string convention_text(Convention convention) {
-  return fmt::format("{}, {} Condon-Shortley phase", name(convention.normalisation),
-                     convention.phase == Phase::condon_shortley ? "with" : "without");
-}
-
 std::string fields_text(std::size_t n) {
   return n == 1 ? "1 field" : fmt::format("{} fields", n);
 }
@@ -264,15 +259,8 @@ void add_analyse(CLI::App& transform, Common& common) {
       *command, options->grid,
       "What the file's grid is: gl (Gauss-Legendre), cc (Clenshaw-Curtis, both poles), dh (Driscoll-Healy, n "
       "rings of 2n points), dh1 (n of n) (default: as the file says)");
-  command
-      ->add_option(
-          "--normalisation", options->normalisation,
-          "Of the coefficients written: orthonormal, 4pi (geodesy), schmidt, unnormalised (to about degree 150)")
-      ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}))
-      ->capture_default_str();
-  command->add_option("--phase", options->phase, "Of the coefficients written: cs (Condon-Shortley) or none")
-      ->check(CLI::IsMember({"cs", "none"}))
-      ->capture_default_str();
+  add_convention_options(*command, options->normalisation, options->phase, "Of the coefficients written");
+  for (const char* option : {"--normalisation", "--phase"}) command->get_option(option)->capture_default_str();
   add_direction_options(*command, *options, common);
   command->footer(
       "The coefficients have the unit of the field: f = sum of K_lm P_lm(cos theta) (C_lm cos m phi + S_lm sin "

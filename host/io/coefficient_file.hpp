@@ -1,4 +1,5 @@
-// Coefficients of fields, in files. The layouts below are fixed: later versions may add attributes and keep these.
+// Coefficients in files. The layouts below are fixed: later versions may add attributes and keep these. Beside its numbers
+// every file carries the same words and texts (host/io/coefficient_metadata.hpp), and every double reads back as it was.
 //
 // netCDF (netCDF-4), as pyshtools' SHCoeffs.to_netcdf writes real coefficients and SHCoeffs.from_netcdf reads them:
 //   dimensions  degree, order, both lmax + 1
@@ -6,15 +7,19 @@
 //   double      coeffs(degree, order): C_lm at [l][m] for m <= l, S_lm at [m - 1][l] for m >= 1; several fields: coeffs_1,
 //               coeffs_2 ...; with the attributes title (the field's name, or empty), description (program and version),
 //               normalization "ortho" | "4pi" | "schmidt" | "unnorm", csphase (integer): -1 with the Condon-Shortley
-//               phase, 1 without; of several fields each has the integer attribute field, 1, 2 ...
-// CSV: lines "# lmax 8", "# normalisation orthonormal", "# phase cs", then the names l,m,C,S (several fields:
-//   l,m,C_1,S_1,C_2,S_2 ...), then a row for each l and m >= 0, sorted by l, then m.
+//               phase, 1 without; of several fields each has the integer attribute field, 1, 2 ...; of potentials GM and
+//               r0 (double), which SHGravCoeffs.from_netcdf asks for
+//   global attributes: the words and texts
+// CSV: lines "# lmax 8", "# normalisation orthonormal", "# phase cs" and more of the kind, then the names l,m,C,S (several
+//   fields: l,m,C_1,S_1,C_2,S_2 ...), then a row for each l and m >= 0, sorted by l, then m. Complex coefficients:
+//   l,m,re,im, of several fields l,m and NAME_re,NAME_im of each.
+// JSON: data/schemas/cowgpu.coefficients.v1.json.
+// .gfc: host/io/gfc.hpp. .sh: host/io/shtools_text.hpp. Both real.
 //
-// Also read: what `cowgpu expand` writes. Of the JSON the expansion `mass`, of the CSV (l,m,re,im, or l,m and NAME_re,NAME_im
-// of several fields) everything, as fields with these coefficients. A variable `errors` of pyshtools is left out.
+// Also read: what `cowgpu expand` writes as JSON and CSV. A variable `errors` of pyshtools is left out.
 #pragma once
 
-#include "host/convention.hpp"
+#include "host/coefficient_set.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/file_format.hpp"
 #include "host/sphere_coefficients.hpp"
@@ -25,7 +30,7 @@
 
 namespace cowgpu {
 
-/// What a coefficient file holds.
+/// What a coefficient file holds, as complex orthonormal coefficients.
 struct CoefficientFile {
   SphereCoefficients coefficients;
   Convention convention;          ///< of the file; what is held here is complex and orthonormal always
@@ -36,8 +41,26 @@ struct CoefficientFile {
 /// Largest degree that is read.
 inline constexpr int largest_file_degree = 8192;
 
-/// Reads coefficients by the name's suffix: .nc, .csv or .json. All must be finite. Throws Error(cannot_read, too_large,
-/// file_syntax, file_truncated, file_format) with file and line or variable, and bad_argument for another suffix.
+enum class CoefficientFormat { json, csv, netcdf, gfc, shtools };
+
+/// By the suffix: .json, .csv, .nc, .gfc, .sh. Throws Error(bad_argument) for another.
+CoefficientFormat coefficient_format(const std::filesystem::path& path);
+
+/// Reads coefficients by the name's suffix. All must be finite. `of` names the expansion of a file that `cowgpu expand`
+/// wrote; empty: the only one, or all columns of a CSV as fields. Throws Error(cannot_read, too_large, file_syntax,
+/// file_truncated, file_format) with file and line or variable, and bad_argument for another suffix or where there is no
+/// expansion `of`.
+CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std::string& of = "");
+
+/// What `format` cannot hold of a set, as a sentence that says which formats can; empty where it can hold it all.
+std::string not_held(const CoefficientSet& set, CoefficientFormat format);
+
+/// Writes the numbers as they are; commit() is left to the caller. Throws Error(cannot_write, too_large), and bad_argument
+/// with not_held().
+void write_coefficient_set(const CoefficientSet& set, CoefficientFormat format, AtomicFile& file);
+
+/// The same file as coefficients of fields: of multipoles Q_lm / R^l. Of the JSON of `cowgpu expand` the expansion `mass`.
+/// Throws what read_coefficient_set() throws, and file_format for numbers that fit no double.
 CoefficientFile read_coefficients(const std::filesystem::path& path);
 
 /// Writes them in `convention`; commit() is left to the caller. Throws Error(cannot_write, too_large), and bad_argument as

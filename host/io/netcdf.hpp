@@ -77,6 +77,7 @@ public:
   int variable(const std::string& name, Type type, std::span<const int> dimensions);
   void attribute(int variable, const std::string& name, std::string_view text);
   void attribute(int variable, const std::string& name, std::int64_t number);
+  void attribute(int variable, const std::string& name, double number);
   /// All values of a variable.
   void values(int variable, std::span<const double> values);
   /// Row i of a variable of two dimensions.

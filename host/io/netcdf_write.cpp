@@ -56,6 +56,10 @@ void NetcdfWriter::attribute(int variable, const std::string& name, std::string_
   check(nc_put_att_text(id_, place(variable), name.c_str(), text.size(), text.data()));
 }
 
+void NetcdfWriter::attribute(int variable, const std::string& name, double number) {
+  check(nc_put_att_double(id_, place(variable), name.c_str(), NC_DOUBLE, 1, &number));
+}
+
 void NetcdfWriter::attribute(int variable, const std::string& name, std::int64_t number) {
   const auto value = static_cast<long long>(number);
   check(nc_put_att_longlong(id_, place(variable), name.c_str(), NC_INT64, 1, &value));

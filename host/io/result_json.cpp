@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/file.hpp"
+#include "host/io/shown.hpp"
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -13,9 +14,8 @@ namespace cowgpu::result_json {
 
 using nlohmann::json;
 
-namespace {
-
-json parse(const std::string& name, const std::string& bytes) {
+json parse(const std::filesystem::path& path) {
+  const std::string name = path.string(), bytes = read_file(path);
   try {
     return json::parse(bytes);
   } catch (const json::parse_error& error) {
@@ -28,11 +28,9 @@ json parse(const std::string& name, const std::string& bytes) {
   }
 }
 
-} // namespace
-
 json read(const std::filesystem::path& path) {
   const std::string name = path.string();
-  json all = parse(name, read_file(path));
+  json all = parse(path);
   if (member(name, all, "schema") != "cowgpu.result.v1")
     throw Error(
         Fault::file_format,
@@ -78,12 +76,34 @@ Placement placement(const std::string& name, const json& document) {
   return placement;
 }
 
+const json& expansion(const std::string& name, const json& result, const std::string& of) {
+  const json& expansions = member(name, result, "expansions");
+  if (!of.empty()) {
+    if (expansions.is_object() && expansions.contains(of)) return expansions.at(of);
+    std::string there;
+    if (expansions.is_object())
+      for (const auto& [key, value] : expansions.items()) there += (there.empty() ? "" : ", ") + shown(key);
+    throw Error(Fault::bad_argument, fmt::format("--of {}: {} has no such expansion; there is {}", of, name,
+                                                 there.empty() ? "none" : there));
+  }
+  if (expansions.is_object() && !expansions.empty() && !expansions.contains("mass"))
+    throw Error(Fault::file_format,
+                fmt::format("{}: this file holds surfaces and no mass moments; `cowgpu expand --of ... -o FILE.csv` "
+                            "writes the coefficients of surfaces so that they can be read here",
+                            name));
+  return member(name, expansions, "mass");
+}
+
 SphereCoefficients coefficients(const std::string& name, const json& expansion, int fields, int largest) {
-  const json& lmax = member(name, expansion, "lmax");
-  const json& rows = member(name, expansion, "coefficients");
   if (member(name, expansion, "normalisation") != "orthonormal" || member(name, expansion, "condon_shortley") != true)
     throw Error(Fault::file_format,
                 fmt::format("{}: the coefficients are not orthonormal with the Condon-Shortley phase", name));
+  return rows(name, expansion, fields, largest);
+}
+
+SphereCoefficients rows(const std::string& name, const json& object, int fields, int largest) {
+  const json& lmax = member(name, object, "lmax");
+  const json& rows = member(name, object, "coefficients");
   if (!lmax.is_number_integer() || lmax < 0 || lmax > largest)
     throw Error(Fault::file_format, fmt::format("{}: lmax is no whole number from 0 to {}", name, largest));
   if (!rows.is_array() || rows.size() != SphereCoefficients::count(lmax.get<int>()))

@@ -11,8 +11,10 @@
 
 namespace cowgpu::result_json {
 
-/// The file's document. Throws Error(cannot_read, too_large), file_syntax where it is no JSON, file_format where it is
-/// another document than a cowgpu.result.v1.
+/// The file's document, of any kind. Throws Error(cannot_read, too_large), file_syntax where it is no JSON.
+nlohmann::json parse(const std::filesystem::path& path);
+
+/// The same; Error(file_format) where it is another document than a cowgpu.result.v1.
 nlohmann::json read(const std::filesystem::path& path);
 
 /// A member of an object; `name` is the file's. Throws Error(file_format) where there is none.
@@ -25,9 +27,17 @@ double number(const std::string& name, const nlohmann::json& object, const char*
 /// above 0 or a matrix that is no rotation to 1e-9.
 Placement placement(const std::string& name, const nlohmann::json& document);
 
-/// The members `lmax` and `coefficients` of an expansion: rows [l, m, re, im of each field] by l, then m. Allocates only
-/// what there are rows for. Throws Error(file_format) where lmax is none, above `largest` or not that of the rows, or
-/// where the coefficients are not orthonormal with the Condon-Shortley phase; file_syntax for a row that is wrong.
+/// The member of `expansions` with the mass multipoles or a surface: `of`, or where that is empty `mass`. Throws
+/// Error(file_format) where there is no mass to take, and bad_argument where there is no `of`.
+const nlohmann::json& expansion(const std::string& name, const nlohmann::json& result, const std::string& of);
+
+/// The members `lmax` and `coefficients` of an object: rows [l, m, and two numbers of each field] by l, then m, as real and
+/// imaginary parts. Allocates only what there are rows for. Throws Error(file_format) where lmax is none, above `largest`
+/// or not that of the rows; file_syntax for a row that is wrong.
+SphereCoefficients rows(const std::string& name, const nlohmann::json& object, int fields, int largest);
+
+/// The same of an expansion. Throws also Error(file_format) where the coefficients are not orthonormal with the
+/// Condon-Shortley phase.
 SphereCoefficients coefficients(const std::string& name, const nlohmann::json& expansion, int fields, int largest);
 
 } // namespace cowgpu::result_json

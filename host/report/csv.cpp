@@ -1,4 +1,6 @@
+#include "host/io/coefficient_metadata.hpp"
 #include "host/io/number.hpp"
+#include "host/report/coefficient_sets.hpp"
 #include "host/report/result.hpp"
 #include "host/version.hpp"
 
@@ -32,7 +34,6 @@ std::string mass_comments(const ExpandResult& result) {
     append_number(text, part.density);
     text += "\n";
   }
-  if (result.body.placement.metric) text += "# units m, kg\n";
   return text + fmt::format("# origin ({}) {}\n", result.body.origin_kind, numbers(q.origin));
 }
 
@@ -61,7 +62,12 @@ void append_pair(std::string& text, std::complex<double> value) {
 
 void write_csv(const ExpandResult& result, const Sink& sink) {
   std::string text = "# cowgpu " + std::string(version) + ", " + result.created + "\n";
-  text += "# " + mesh_line(result.body.surface.mesh()) + "\n# device: " + device_line(result.device) + "\n";
+  CoefficientSet facts(0, 1);
+  facts.length_unit = length_unit(result.body);
+  if (result.has_mass) facts.mass_unit = mass_unit(result.body);
+  facts.provenance = provenance_of(result);
+  text += comment_lines(facts, {"lmax"}) + "# " + mesh_line(result.body.surface.mesh()) +
+          "\n# device: " + device_line(result.device) + "\n";
   std::string columns = "l,m";
   if (result.has_mass) {
     text += mass_comments(result);

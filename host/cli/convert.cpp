@@ -1,0 +1,169 @@
+#include "host/cli/commands.hpp"
+
+#include "host/error.hpp"
+#include "host/io/coefficient_file.hpp"
+#include "host/spectrum/convert.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace cowgpu::cli {
+namespace {
+
+struct Options {
+  std::string input, output;
+  std::string of, field;
+  std::string kind, form, normalisation, phase;
+  std::string input_normalisation, input_phase;
+  std::optional<double> reference_radius;
+  std::optional<int> lmax;
+  std::string rotation, angle_unit = "degrees";
+  bool si = false;
+};
+
+// What is asked for, and what the output's format asks for where nothing is.
+ConversionTarget target_of(const Options& options, const CoefficientSet& set) {
+  const CoefficientFormat format = coefficient_format(options.output);
+  const bool gfc = format == CoefficientFormat::gfc, text = gfc || format == CoefficientFormat::shtools;
+  ConversionTarget target;
+  target.reference_radius = options.reference_radius;
+  if (!options.kind.empty()) target.kind = kind_named(options.kind);
+  if (!options.form.empty()) target.form = form_named(options.form);
+  if (!options.normalisation.empty()) target.normalisation = normalisation_named(options.normalisation);
+  if (!options.phase.empty()) target.phase = phase_named(options.phase);
+  if (text && set.kind == CoefficientKind::multipoles && !target.kind) target.kind = CoefficientKind::potential;
+  if (!target.form && format != CoefficientFormat::json && format != CoefficientFormat::csv) target.form = Form::real;
+  const bool geodesy = target.kind == CoefficientKind::potential && set.kind == CoefficientKind::multipoles;
+  if (!target.normalisation && (geodesy || (gfc && set.convention.normalisation != Normalisation::unnormalised)))
+    target.normalisation = Normalisation::four_pi;
+  if (!target.phase && (geodesy || gfc)) target.phase = Phase::none;
+  return target;
+}
+
+EulerAngles angles_of(const Options& options) {
+  const auto angles = parse_point(options.rotation);
+  if (!angles)
+    throw Error(Fault::bad_argument,
+                fmt::format("--rotate {}: it must be three numbers ALPHA,BETA,GAMMA", options.rotation));
+  const long double unit = options.angle_unit == "degrees" ? std::numbers::pi_v<long double> / 180 : 1;
+  return {double(angles->x() * unit), double(angles->y() * unit), double(angles->z() * unit)};
+}
+
+// Where the file does not say its convention, what the user says of it.
+void state_convention(const Options& options, CoefficientSet& set) {
+  if (options.input_normalisation.empty() && options.input_phase.empty()) return;
+  if (set.convention_stated)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--input-normalisation and --input-phase are for files that do not say their convention; {} "
+                    "says {} and {}",
+                    options.input, name(set.convention.normalisation), name(set.convention.phase)));
+  if (!options.input_normalisation.empty())
+    set.convention.normalisation = *normalisation_named(options.input_normalisation);
+  if (!options.input_phase.empty()) set.convention.phase = *phase_named(options.input_phase);
+}
+
+// Lengths are metres and densities kg/m^3.
+void state_si(CoefficientSet& set) {
+  set.length_unit = "m";
+  set.mass_unit = "kg";
+  set.gravitational_constant = gravitational_constant_si;
+  if (set.kind == CoefficientKind::potential && set.mass) set.gm = *set.mass * gravitational_constant_si;
+}
+
+std::string described(const CoefficientSet& set) {
+  std::string text =
+      fmt::format("{} to degree {}, {}, {}", name(set.kind), set.lmax, name(set.form), convention_text(set.convention));
+  if (set.fields > 1) text = fmt::format("{} fields: ", set.fields) + text;
+  if (set.reference_radius) text += fmt::format(", R = {}", *set.reference_radius);
+  if (set.gm) text += fmt::format(", GM = {}", *set.gm);
+  return text;
+}
+
+void run(const Options& options, const Common& common) {
+  const CoefficientFormat format = coefficient_format(options.output);
+  refuse_same_file(options.input, options.output);
+  std::optional<EulerAngles> angles;
+  if (!options.rotation.empty()) angles = angles_of(options);
+  AtomicFile file(options.output); // before long work: a result that cannot be written should fail now
+  CoefficientSet set = read_coefficient_set(options.input, options.of);
+  const std::string before = described(set);
+  state_convention(options, set);
+  if (options.si) state_si(set);
+  if (!options.field.empty()) set = single_field(set, options.field);
+  if (options.lmax && *options.lmax > set.lmax)
+    throw Error(Fault::bad_argument, fmt::format("--lmax {}: {} goes to degree {}, and convert only leaves degrees out",
+                                                 *options.lmax, options.input, set.lmax));
+  ConversionTarget shorter;
+  shorter.lmax = options.lmax;
+  if (options.lmax) set = converted(set, shorter);
+  if (angles) {
+    ConsoleMonitor monitor(common.style());
+    set = rotated(set, *angles, monitor, common.threads);
+    monitor.clear();
+    set.remarks.emplace_back(
+        fmt::format("rotation_{}", set.remarks.size() + 1),
+        fmt::format("R_z(A) R_y(B) R_z(C) about the origin, A,B,C = {} {}", options.rotation, options.angle_unit));
+  }
+  CoefficientSet result = converted(set, target_of(options, set));
+  std::string& history = result.provenance.history;
+  history += fmt::format("{}{}", history.empty() ? "" : "; ", fmt::join(common.command, " "));
+  write_coefficient_set(result, format, file);
+  check_stop(ConsoleMonitor(ProgressStyle::none));
+  file.commit();
+  if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
+  for (const std::string& note : set.notes) write_stdout("note: " + note + "\n");
+  write_stdout(fmt::format("from: {}\nto:   {}\n", before, described(result)));
+}
+
+} // namespace
+
+void add_convert(CLI::App& app, Common& common) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("convert", "Coefficients in another file format, convention, radius or frame");
+  command
+      ->add_option("IN", options->input,
+                   "Coefficients: .json or .csv (of `expand` or `convert`), .nc (as pyshtools writes them), .gfc "
+                   "(ICGEM), .sh (SHTOOLS)")
+      ->required();
+  command->add_option("OUT", options->output, "FILE.json, .csv, .nc, .gfc or .sh")->required();
+  command->add_option("--of", options->of, "Of a result of `expand`: mass (default), harmonic, stretch, smooth or flow")
+      ->type_name("NAME");
+  command->add_option("--field", options->field, "Of several fields the one of this name, such as f_r")
+      ->type_name("NAME");
+  add_convention_options(*command, options->normalisation, options->phase, "Of OUT (default: of IN)");
+  command->add_option("--form", options->form, "Of OUT: real (C, S) or complex (re, im; .json and .csv)")
+      ->check(CLI::IsMember({"real", "complex"}));
+  command
+      ->add_option("--kind", options->kind,
+                   "Of a body: multipoles (Q_lm / R^l) or potential (C_lm of geodesy; what .gfc and .sh hold)")
+      ->check(CLI::IsMember({"multipoles", "potential"}));
+  command->add_option("--reference-radius", options->reference_radius, "Of OUT, in the length unit of IN")
+      ->type_name("R");
+  command
+      ->add_option("--rotate", options->rotation,
+                   "Turn the body about its origin (or the fields) by R_z(ALPHA) R_y(BETA) R_z(GAMMA), the rightmost "
+                   "first")
+      ->type_name("ALPHA,BETA,GAMMA");
+  command->add_option("--angle-unit", options->angle_unit, "Of --rotate: degrees or radians")
+      ->check(CLI::IsMember({"degrees", "radians"}))
+      ->capture_default_str();
+  add_degree_option(*command, options->lmax.emplace(-1), "Leave out the degrees above");
+  command
+      ->add_option("--input-normalisation", options->input_normalisation,
+                   "Of IN, where a .sh file does not say it (4pi)")
+      ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
+  command->add_option("--input-phase", options->input_phase, "The same (none)")->check(CLI::IsMember({"cs", "none"}));
+  command->add_flag("--si", options->si,
+                    "Lengths of IN are metres and its density is in kg/m^3: GM = 6.6743e-11 m^3/(kg s^2) M");
+  add_run_options(*command, common);
+  command->footer("host/convention.hpp and host/coefficient_set.hpp say what the conventions are.\n"
+                  "Example: cowgpu expand benchmark --lmax 64 -o cow.json && cowgpu convert cow.json cow.gfc");
+  command->callback([options, &common] {
+    if (*options->lmax < 0) options->lmax.reset();
+    run(*options, common);
+  });
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,60 @@
+#include "host/io/coefficient_lines.hpp"
+
+#include "host/io/coefficient_metadata.hpp"
+#include "host/io/shown.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace cowgpu {
+
+bool WordLines::next() {
+  if (rest_.empty()) return false;
+  const auto end = rest_.find('\n');
+  line = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  ++number;
+  words.clear();
+  constexpr std::string_view gaps = " \t,";
+  for (auto at = line.find_first_not_of(gaps); at != std::string_view::npos;) {
+    const auto stop = line.find_first_of(gaps, at);
+    words.push_back(line.substr(at, stop - at));
+    if (words.size() > 16) break; // no line of these formats has so many
+    at = stop == std::string_view::npos ? stop : line.find_first_not_of(gaps, stop);
+  }
+  return true;
+}
+
+double WordLines::real(std::string_view word) const {
+  std::string text(word.substr(word.starts_with('+')));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range)
+    fail(Fault::file_syntax, fmt::format("'{}' has no place in a double", shown(word)));
+  if (error != std::errc() || end != text.data() + text.size() || text.empty())
+    fail(Fault::file_syntax, fmt::format("a number expected, found '{}'", shown(word)));
+  if (!std::isfinite(value))
+    fail(Fault::file_syntax, fmt::format("'{}': every value must be a finite number", shown(word)));
+  return value;
+}
+
+int WordLines::whole(std::string_view word, const char* what, int largest) const {
+  int value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || value < 0 || value > largest)
+    fail(Fault::file_syntax,
+         fmt::format("{} is '{}'; whole numbers from 0 to {} are possible", what, shown(word), largest));
+  return value;
+}
+
+void WordLines::fail(Fault fault, const std::string& sentence) const {
+  throw Error(fault, fmt::format("{}: {}", place(file_, number), sentence));
+}
+
+} // namespace cowgpu

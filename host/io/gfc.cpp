@@ -1,0 +1,215 @@
+#include "host/io/gfc.hpp"
+
+#include "host/io/coefficient_file.hpp"
+#include "host/io/coefficient_formats.hpp"
+#include "host/io/coefficient_lines.hpp"
+#include "host/io/coefficient_metadata.hpp"
+#include "host/io/file.hpp"
+#include "host/io/number.hpp"
+#include "host/io/shown.hpp"
+#include "host/version.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace cowgpu {
+namespace {
+
+struct Row {
+  int l = 0, m = 0;
+  double c = 0, s = 0;
+  std::size_t line = 0;
+};
+
+// What stands before end_of_head.
+struct Head {
+  std::map<std::string, std::string, std::less<>> values; // by keyword
+  std::map<std::string, std::size_t, std::less<>> lines;
+  Metadata metadata;
+};
+
+Head read_head(WordLines& lines) {
+  Head head;
+  while (lines.next()) {
+    if (lines.words.empty()) continue;
+    const std::string_view keyword = lines.words[0];
+    if (keyword == "end_of_head") return head;
+    if (keyword.starts_with('#')) take_comment(lines.line, lines.number, head.metadata);
+    if (keyword == "begin_of_head") {
+      head.values.clear(); // what stands above it is no head
+    } else if (lines.words.size() > 1) {
+      head.values[std::string(keyword)] = lines.words[1];
+      head.lines[std::string(keyword)] = lines.number;
+    }
+  }
+  lines.fail(lines.number == 0 || head.values.empty() ? Fault::file_format : Fault::file_truncated,
+             "the file ends before a line end_of_head, which closes the head of a gravity model");
+}
+
+// A keyword's text; the line that messages name is then that of the keyword.
+const std::string& required(const Head& head, WordLines& lines, std::string_view keyword) {
+  const auto found = head.values.find(keyword);
+  if (found == head.values.end()) lines.fail(Fault::file_syntax, fmt::format("the head has no line '{} ...'", keyword));
+  lines.number = head.lines.find(keyword)->second;
+  return found->second;
+}
+
+// The convention, and everything about the body.
+CoefficientSet read_facts(const Head& head, WordLines& lines, int& lmax) {
+  const std::size_t end = lines.number;
+  CoefficientSet set(0, 1);
+  if (const std::string& product = required(head, lines, "product_type"); product != "gravity_field")
+    lines.fail(Fault::file_format, fmt::format("product_type is '{}'; only gravity_field can be read", shown(product)));
+  if (head.values.contains("norm")) {
+    const std::string& norm = required(head, lines, "norm");
+    if (norm != "fully_normalized" && norm != "unnormalized")
+      lines.fail(Fault::file_syntax,
+                 fmt::format("norm is '{}'; there are fully_normalized and unnormalized", shown(norm)));
+    set.convention = {norm == "unnormalized" ? Normalisation::unnormalised : Normalisation::four_pi, Phase::none};
+  } else {
+    set.convention = {Normalisation::four_pi, Phase::none};
+  }
+  lines.number = end;
+  const bool earth = head.values.contains("earth_gravity_constant") || !head.values.contains("gravity_constant");
+  set.gm = lines.real(required(head, lines, earth ? "earth_gravity_constant" : "gravity_constant"));
+  lines.number = end;
+  set.reference_radius = lines.real(required(head, lines, "radius"));
+  if (!(*set.reference_radius > 0)) lines.fail(Fault::file_syntax, "radius must be above 0");
+  lines.number = end;
+  lmax = lines.whole(required(head, lines, "max_degree"), "max_degree", largest_file_degree);
+  lines.number = end;
+  set.kind = CoefficientKind::potential;
+  if (head.metadata.contains("cowgpu")) {
+    const Convention stated = set.convention;
+    take_metadata(head.metadata, lines.file(), set);
+    set.convention = stated;
+  } else {
+    set.length_unit = "m";
+    set.mass_unit = "kg";
+    set.gravitational_constant = gravitational_constant_si;
+    if (head.values.contains("modelname")) set.provenance.mesh = head.values.find("modelname")->second;
+  }
+  return set;
+}
+
+std::vector<Row> read_data(WordLines& lines, int lmax, bool& errors) {
+  std::vector<Row> rows;
+  while (lines.next()) {
+    if (lines.words.empty()) continue;
+    const std::string_view key = lines.words[0];
+    for (const char* moving : {"gfct", "trnd", "dot", "asin", "acos"})
+      if (key == moving)
+        lines.fail(
+            Fault::file_format,
+            fmt::format("a term '{}', which varies with time; only static models (lines 'gfc') can be read", key));
+    if (key != "gfc") lines.fail(Fault::file_syntax, fmt::format("a line 'gfc ...' expected, found '{}'", shown(key)));
+    if (lines.words.size() < 5)
+      lines.fail(Fault::file_truncated,
+                 fmt::format("gfc, degree, order, C and S expected, found {} words", lines.words.size()));
+    Row row;
+    row.l = lines.whole(lines.words[1], "the degree", lmax);
+    row.m = lines.whole(lines.words[2], "the order", row.l);
+    row.c = lines.real(lines.words[3]);
+    row.s = lines.real(lines.words[4]);
+    row.line = lines.number;
+    if (row.m == 0 && row.s != 0) lines.fail(Fault::file_syntax, "S of order 0 must be 0");
+    errors = errors || lines.words.size() > 5;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void fill(CoefficientSet& set, const std::vector<Row>& rows, int lmax, WordLines& lines) {
+  const std::size_t end = lines.number, count = SphereCoefficients::count(lmax);
+  std::vector<char> there; // allocated only where there are rows for it
+  if (rows.size() + 3 >= count) {
+    set.lmax = lmax;
+    set.first.assign(count, 0);
+    set.second.assign(count, 0);
+    there.assign(count, 0);
+  }
+  std::vector<std::pair<int, int>> seen; // of files with too few rows
+  for (const Row& row : rows) {
+    lines.number = row.line;
+    if (there.empty()) {
+      seen.emplace_back(row.l, row.m);
+      continue;
+    }
+    const std::size_t at = set.index(0, row.l, row.m);
+    if (there[at]) lines.fail(Fault::file_syntax, fmt::format("degree {}, order {} a second time", row.l, row.m));
+    there[at] = 1;
+    set.first[at] = row.c;
+    set.second[at] = row.s;
+  }
+  lines.number = end;
+  std::sort(seen.begin(), seen.end());
+  std::size_t next = 0;
+  bool missing = false;
+  for (int l = 0; l <= lmax; ++l)
+    for (int m = 0; m <= l; ++m) {
+      while (next < seen.size() && seen[next] < std::pair(l, m)) ++next;
+      if (there.empty() ? next < seen.size() && seen[next] == std::pair(l, m) : there[set.index(0, l, m)] != 0)
+        continue;
+      if (l > 1)
+        lines.fail(Fault::file_truncated,
+                   fmt::format("the file ends without a line 'gfc {} {} ...'; max_degree is {}", l, m, lmax));
+      missing = true;
+      if (l == 0) set.first[set.index(0, 0, 0)] = 1;
+    }
+  if (missing) set.notes.push_back("rows of degrees 0 and 1 that the file leaves out were taken as C_00 = 1 and 0");
+}
+
+} // namespace
+
+CoefficientSet read_gfc(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  std::string_view text = bytes;
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  WordLines lines(path.string(), text);
+  const Head head = read_head(lines);
+  int lmax = 0;
+  CoefficientSet set = read_facts(head, lines, lmax);
+  bool errors = false;
+  const std::vector<Row> rows = read_data(lines, lmax, errors);
+  fill(set, rows, lmax, lines);
+  if (errors) set.notes.push_back("the errors of the coefficients were left out");
+  return set;
+}
+
+void write_gfc(const CoefficientSet& set, AtomicFile& file) {
+  // Readers look for the keywords anywhere in a line and let later lines win, so comments stand above the head.
+  std::string text = fmt::format("# cowgpu {}\n", version);
+  text += comment_lines(set, {"lmax", "normalisation", "phase", "reference_radius", "gm"});
+  for (auto at = text.find("of_head"); at != std::string::npos; at = text.find("of_head", at)) text[at + 2] = '-';
+  const bool si = set.length_unit == "m" && set.mass_unit == "kg";
+  text +=
+      "# C_lm + i S_lm = (-1)^m sqrt((2 - delta_m0) 4 pi) Q_lm / ((2l + 1) M R^l); axes of the mesh, theta from +z,\n"
+      "# phi from +x towards +y, about the origin above\n";
+  if (!si)
+    text += "# lengths are in the unit of the mesh, the mass is density times its cube, and GM below is the mass times "
+            "the\n"
+            "# constant above\n";
+  std::string model = set.provenance.mesh;
+  std::replace_if(
+      model.begin(), model.end(), [](char c) { return c <= ' ' || c > '~'; }, '_');
+  text += fmt::format("begin_of_head\n{:<24}gravity_field\n{:<24}{}\n{:<24}", "product_type", "modelname",
+                      model.empty() ? "cowgpu" : model, "earth_gravity_constant");
+  append_number(text, set.gm.value_or(0));
+  text += fmt::format("\n{:<24}", "radius");
+  append_number(text, set.reference_radius.value_or(1));
+  text += fmt::format("\n{:<24}{}\n{:<24}no\n{:<24}{}\n{:<24}unknown\n\nkey l m C S\nend_of_head\n", "max_degree",
+                      set.lmax, "errors", "norm",
+                      set.convention.normalisation == Normalisation::unnormalised ? "unnormalized" : "fully_normalized",
+                      "tide_system");
+  file.write(text);
+  write_rows(set.lmax, file, [&](std::string& row, int l, int m) {
+    const std::size_t at = set.index(0, l, m);
+    row += fmt::format("gfc {} {} ", l, m);
+    append_pair(row, set.first[at], set.second[at], " ");
+    row += "\n";
+  });
+}
+
+} // namespace cowgpu
