@@ -183,6 +183,7 @@ private:
     const std::uint64_t positions = document_.whole(*attributes, "POSITION", what);
     const GltfNumbers points = document_.accessor(positions, "VEC3", what);
     const auto [place, is_new] = first_vertex.try_emplace(positions, static_cast<std::uint32_t>(part.vertices.size()));
+    const std::uint32_t base = place->second;
     if (is_new) {
       require_room(part, points.count, 0);
       part.vertices.reserve(part.vertices.size() + points.count);
@@ -193,7 +194,7 @@ private:
       }
     }
     if (!document_.member(primitive, "indices")) {
-      add_faces(part, mode, points.count, what, [&](std::size_t i) { return std::uint32_t(place->second + i); });
+      add_faces(part, mode, points.count, what, [&](std::size_t i) { return std::uint32_t(base + i); });
       return;
     }
     const GltfNumbers indices = document_.accessor(document_.whole(primitive, "indices", what), "SCALAR", what);
@@ -207,7 +208,7 @@ private:
         document_.fail(
             Fault::mesh_index_range, what,
             fmt::format("index {} names vertex {}, but there are {}, numbered from 0.", i, index, points.count));
-      return place->second + index;
+      return base + index;
     });
   }
 
