@@ -140,7 +140,8 @@ private:
       if (std::abs((*m)[3]) + std::abs((*m)[7]) + std::abs((*m)[11]) + std::abs((*m)[15] - 1) > 1e-6)
         document_.fail(Fault::file_syntax, what, "its matrix is not affine: the last row must be 0 0 0 1.");
       for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row) placement.matrix(row, column) = (*m)[std::size_t(4 * column + row)];
+        for (int row = 0; row < 3; ++row)
+          placement.matrix(row, column) = (*m)[4 * std::size_t(column) + std::size_t(row)];
       placement.shift = {(*m)[12], (*m)[13], (*m)[14]};
       return placement;
     }
