@@ -405,7 +405,7 @@ int main(int argc, char** argv) {
   using namespace cowgpu;
   bench::Options options;
   CLI::App app("Verifies and times the stage moments: against a lattice quadrature, and alone.");
-  app.add_option("mesh", options.mesh, "an OFF file or a name; without it cow.off of the catalogue, or builtin:cow");
+  app.add_option("mesh", options.mesh, "a mesh file or a name; without it cow.off of the catalogue, or builtin:cow");
   app.add_flag("--quick", options.quick, "three runs of the short cases");
   app.add_flag("--json", options.json, "print a JSON document");
   app.add_flag("--shapes", options.shapes, "time the layouts of the Vulkan kernels instead");

@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
   app.add_option("--runs", options.runs, "calls of each case")->check(CLI::PositiveNumber);
   app.add_option("--threads", options.threads, "of the CPU path; 0: all");
   app.add_option("--device", options.device, "Vulkan device: auto, none, an index, or a part of its name");
-  app.add_option("--map", options.maps, "OFF files whose vertices lie on the unit sphere, beside the built-in maps");
+  app.add_option("--map", options.maps, "mesh files whose vertices lie on the unit sphere, beside the built-in maps");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

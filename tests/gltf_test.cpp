@@ -213,13 +213,11 @@ TEST_CASE("glTF scenes that would grow beyond all bounds are refused", "[gltf][r
   values += "0]}";
   const std::string ignored = R"({"asset":{"version":"2.0"},"extras":[)" +
                               std::string(2000000, '[').replace(0, 2000000, 1999998, '0').append("]]]}");
-  const std::size_t growth = peak_growth([&] {
-    outcome(instances);
-    outcome(values);
-    outcome(ignored);
-  });
-  INFO(growth);
-  if (memory_is_measurable()) CHECK(growth < std::size_t{64} << 20);
+  for (const std::string* bytes : std::initializer_list<const std::string*>{&instances, &values, &ignored}) {
+    const std::size_t growth = peak_growth([&] { outcome(*bytes); });
+    INFO(growth);
+    if (memory_is_measurable()) CHECK(growth < std::size_t{64} << 20);
+  }
   CHECK(outcome(instances).fault == "too-large");
   CHECK(outcome(instances).says("instances"));
   CHECK(outcome(values).fault == "too-large");

@@ -101,7 +101,7 @@ TEST_CASE("the welded STL of the benchmark cow has one edge of four faces: momen
   Paths paths;
   paths.each([&](Backend& backend) {
     check_close(moments(backend, moment_problem(single.mesh(), 16)), moments(backend, moment_problem(rounded, 16)),
-                moment_problem(rounded, 16), 3e-14);
+                moment_problem(rounded, 16), 3e-15);
   });
 }
 

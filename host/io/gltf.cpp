@@ -13,6 +13,8 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
+#include <set>
 
 namespace cowgpu {
 namespace {
@@ -23,6 +25,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t deepest_node = 1000;
 constexpr std::uint64_t spare_bytes = std::uint64_t{32} << 20; // of the mesh, beyond 4 times the file
+constexpr std::uint64_t most_primitives = 1000000;             // with their instances; each counts up to three times
 
 enum Mode : std::uint64_t { triangles = 4, strip = 5, fan = 6 };
 
@@ -47,7 +50,10 @@ public:
   }
 
   RawMesh read() {
-    walk(roots());
+    const auto places = roots();
+    walk(places, [&](std::uint64_t mesh, const Placement&, const std::string& what) { require_room(mesh, what); });
+    walk(places,
+         [&](std::uint64_t mesh, const Placement& place, const std::string& what) { add_instance(mesh, place, what); });
     if (!closed_ && !seems_balanced(mesh_.faces)) weld(mesh_);
     notes();
     return std::move(mesh_);
@@ -88,8 +94,15 @@ private:
   }
 
   static std::string node_name(std::uint64_t node) { return fmt::format("node {}", node); }
+  static std::string mesh_name(std::uint64_t mesh) { return fmt::format("mesh {}", mesh); }
+  static std::string primitive_name(const std::string& mesh, std::size_t primitive) {
+    return fmt::format("{}, primitive {}", mesh, primitive);
+  }
 
-  void walk(std::vector<Step> steps) {
+  /// Calls `visit` with every mesh that hangs on the nodes, in the file's order.
+  template <class Visit>
+  void walk(std::vector<Step> steps, Visit&& visit) {
+    skinned_ = 0;
     std::reverse(steps.begin(), steps.end()); // the last one is taken first
     std::vector<bool> seen(document_.count("nodes"));
     while (!steps.empty()) {
@@ -109,7 +122,7 @@ private:
       if (document_.member(node, "mesh")) {
         const bool skinned = document_.member(node, "skin") != nullptr;
         skinned_ += skinned;
-        add_instance(document_.whole(node, "mesh", what), skinned ? Placement() : placement, what);
+        visit(document_.whole(node, "mesh", what), skinned ? Placement() : placement, what);
       }
       const std::size_t first = steps.size();
       for (const Json& child : document_.list(node, "children", what)) {
@@ -127,7 +140,8 @@ private:
       if (std::abs((*m)[3]) + std::abs((*m)[7]) + std::abs((*m)[11]) + std::abs((*m)[15] - 1) > 1e-6)
         document_.fail(Fault::file_syntax, what, "its matrix is not affine: the last row must be 0 0 0 1.");
       for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row) placement.matrix(row, column) = (*m)[std::size_t(4 * column + row)];
+        for (int row = 0; row < 3; ++row)
+          placement.matrix(row, column) = (*m)[4 * std::size_t(column) + std::size_t(row)];
       placement.shift = {(*m)[12], (*m)[13], (*m)[14]};
       return placement;
     }
@@ -144,12 +158,15 @@ private:
 
   void add_instance(std::uint64_t index, const Placement& placement, const std::string& named_by) {
     const Json& object = document_.object("meshes", index, named_by);
-    const std::string what = fmt::format("mesh {}", index);
+    const std::string what = mesh_name(index);
     RawMesh part;
+    const Size size = size_of(index, named_by);
+    part.vertices.reserve(size.vertices);
+    part.faces.reserve(size.faces);
     std::map<std::uint64_t, std::uint32_t> first_vertex; // of each accessor of positions
     const Json& primitives = document_.list(object, "primitives", what);
     for (std::size_t p = 0; p < primitives.size(); ++p)
-      add_primitive(part, first_vertex, primitives[p], fmt::format("{}, primitive {}", what, p));
+      add_primitive(part, first_vertex, primitives[p], primitive_name(what, p));
     if (placement.moves())
       for (Vec3& v : part.vertices) v = placement(v);
     if (placement.matrix.determinant() < 0) {
@@ -165,39 +182,63 @@ private:
       mesh_.faces = std::move(part.faces);
       return;
     }
+    mesh_.vertices.reserve(total_.vertices); // once; what welding saves is never touched
+    mesh_.faces.reserve(total_.faces);
     const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
     mesh_.vertices.insert(mesh_.vertices.end(), part.vertices.begin(), part.vertices.end());
     for (const Face& f : part.faces) mesh_.faces.push_back({f[0] + base, f[1] + base, f[2] + base});
   }
 
-  void add_primitive(RawMesh& part, std::map<std::uint64_t, std::uint32_t>& first_vertex, const Json& primitive,
-                     const std::string& what) {
-    const Json* attributes = document_.member(primitive, "attributes");
-    if (!attributes || !document_.member(*attributes, "POSITION")) return; // nothing to be seen, says the specification
-    const std::uint64_t mode = document_.whole(primitive, "mode", what, triangles);
-    if (mode != triangles && mode != strip && mode != fan)
+  struct Primitive {
+    std::uint64_t mode = triangles, positions = 0;
+    GltfNumbers points;
+    std::optional<GltfNumbers> indices;
+    std::size_t faces = 0;
+  };
+
+  /// Nothing for a primitive without positions: there is nothing to be seen, says the specification.
+  std::optional<Primitive> primitive_of(const Json& json, const std::string& what) {
+    const Json* attributes = document_.member(json, "attributes");
+    if (!attributes || !document_.member(*attributes, "POSITION")) return {};
+    Primitive primitive;
+    primitive.mode = document_.whole(json, "mode", what, triangles);
+    if (primitive.mode != triangles && primitive.mode != strip && primitive.mode != fan)
       document_.fail(Fault::file_format, what,
-                     mode < triangles ? "points and lines bound no volume and are not read. Export triangles only."
-                                      : fmt::format("there is no mode {}.", mode));
-    targets_ = targets_ || document_.member(primitive, "targets");
-    const std::uint64_t positions = document_.whole(*attributes, "POSITION", what);
-    const GltfNumbers points = document_.accessor(positions, "VEC3", what);
-    const auto [place, is_new] = first_vertex.try_emplace(positions, static_cast<std::uint32_t>(part.vertices.size()));
-    if (is_new) {
-      require_room(part, points.count, 0);
-      part.vertices.reserve(part.vertices.size() + points.count);
+                     primitive.mode < triangles
+                         ? "points and lines bound no volume and are not read. Export triangles only."
+                         : fmt::format("there is no mode {}.", primitive.mode));
+    targets_ = targets_ || document_.member(json, "targets");
+    primitive.positions = document_.whole(*attributes, "POSITION", what);
+    primitive.points = document_.accessor(primitive.positions, "VEC3", what);
+    if (document_.member(json, "indices"))
+      primitive.indices = document_.accessor(document_.whole(json, "indices", what), "SCALAR", what);
+    const std::size_t corners = primitive.indices ? primitive.indices->count : primitive.points.count;
+    if (primitive.mode == triangles && corners % 3 != 0)
+      document_.fail(Fault::file_syntax, what, fmt::format("{} corners make no whole number of triangles.", corners));
+    primitive.faces = primitive.mode == triangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
+    return primitive;
+  }
+
+  void add_primitive(RawMesh& part, std::map<std::uint64_t, std::uint32_t>& first_vertex, const Json& json,
+                     const std::string& what) {
+    const auto primitive = primitive_of(json, what);
+    if (!primitive) return;
+    const GltfNumbers& points = primitive->points;
+    const auto [place, is_new] =
+        first_vertex.try_emplace(primitive->positions, static_cast<std::uint32_t>(part.vertices.size()));
+    const std::uint32_t base = place->second;
+    if (is_new)
       for (std::size_t v = 0; v < points.count; ++v) {
         float xyz[3];
         std::memcpy(xyz, points.data + v * points.stride, sizeof xyz);
         part.vertices.emplace_back(double(xyz[0]), double(xyz[1]), double(xyz[2]));
       }
-    }
-    if (!document_.member(primitive, "indices")) {
-      add_faces(part, mode, points.count, what, [&](std::size_t i) { return std::uint32_t(place->second + i); });
+    if (!primitive->indices) {
+      add_faces(part, *primitive, [&](std::size_t i) { return std::uint32_t(base + i); });
       return;
     }
-    const GltfNumbers indices = document_.accessor(document_.whole(primitive, "indices", what), "SCALAR", what);
-    add_faces(part, mode, indices.count, what, [&](std::size_t i) {
+    const GltfNumbers& indices = *primitive->indices;
+    add_faces(part, *primitive, [&](std::size_t i) {
       std::uint32_t index = 0; // little endian: a shorter number fills its lower bytes
       std::memcpy(&index, indices.data + i * indices.stride,
                   indices.component_type == gltf_ubyte    ? 1
@@ -207,19 +248,15 @@ private:
         document_.fail(
             Fault::mesh_index_range, what,
             fmt::format("index {} names vertex {}, but there are {}, numbered from 0.", i, index, points.count));
-      return place->second + index;
+      return base + index;
     });
   }
 
-  /// Triangles of `count` corners, whose vertices `at` gives (glTF 2.0, 3.7.2.1).
+  /// The triangles, of whose corners `at` gives the vertices (glTF 2.0, 3.7.2.1).
   template <class At>
-  void add_faces(RawMesh& part, std::uint64_t mode, std::size_t count, const std::string& what, At&& at) {
-    if (mode == triangles && count % 3 != 0)
-      document_.fail(Fault::file_syntax, what, fmt::format("{} corners make no whole number of triangles.", count));
-    const std::size_t faces = mode == triangles ? count / 3 : count < 3 ? 0 : count - 2;
-    require_room(part, 0, faces);
-    part.faces.reserve(part.faces.size() + faces);
-    for (std::size_t f = 0; f < faces; ++f) {
+  static void add_faces(RawMesh& part, const Primitive& primitive, At&& at) {
+    const std::uint64_t mode = primitive.mode;
+    for (std::size_t f = 0; f < primitive.faces; ++f) {
       if (mode == triangles)
         part.faces.push_back({at(3 * f), at(3 * f + 1), at(3 * f + 2)});
       else if (mode == strip)
@@ -229,16 +266,41 @@ private:
     }
   }
 
-  void require_room(const RawMesh& part, std::uint64_t vertices, std::uint64_t faces) {
-    const std::uint64_t all_vertices = mesh_.vertices.size() + part.vertices.size() + vertices;
-    const std::uint64_t all_faces = mesh_.faces.size() + part.faces.size() + faces;
-    if (all_vertices >= 0xffffffff || all_vertices * sizeof(Vec3) + all_faces * sizeof(Face) > most_bytes_)
-      document_.fail(
-          Fault::too_large, "the scene",
-          fmt::format("its instances make more than {} vertices and {} triangles, over {} MiB for a file of this "
-                      "size. Export one instance, or the body as PLY.",
-                      mesh_.vertices.size() + part.vertices.size(), mesh_.faces.size() + part.faces.size(),
-                      most_bytes_ >> 20));
+  struct Size {
+    std::uint64_t primitives = 0, vertices = 0, faces = 0;
+  };
+
+  Size size_of(std::uint64_t mesh, const std::string& named_by) {
+    const auto known = sizes_.find(mesh);
+    if (known != sizes_.end()) return known->second;
+    const Json& object = document_.object("meshes", mesh, named_by);
+    const std::string what = mesh_name(mesh);
+    const Json& primitives = document_.list(object, "primitives", what);
+    Size size{.primitives = primitives.size()};
+    std::set<std::uint64_t> seen;
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      const auto primitive = primitive_of(primitives[p], primitive_name(what, p));
+      if (!primitive) continue;
+      if (seen.insert(primitive->positions).second) size.vertices += primitive->points.count;
+      size.faces += primitive->faces;
+    }
+    return sizes_[mesh] = size;
+  }
+
+  /// Adds up what the instances make, so that neither memory nor time is without bound.
+  void require_room(std::uint64_t mesh, const std::string& named_by) {
+    const Size size = size_of(mesh, named_by);
+    total_.primitives += size.primitives;
+    total_.vertices += size.vertices;
+    total_.faces += size.faces;
+    if (total_.vertices < 0xffffffff && total_.vertices * sizeof(Vec3) + total_.faces * sizeof(Face) <= most_bytes_ &&
+        total_.primitives <= most_primitives)
+      return;
+    document_.fail(
+        Fault::too_large, "the scene",
+        fmt::format("its instances make {} vertices and {} triangles or more in {} primitives, over {} MiB or "
+                    "{} primitives, the most for a file of this size. Export one instance, or the body as PLY.",
+                    total_.vertices, total_.faces, total_.primitives, most_bytes_ >> 20, most_primitives));
   }
 
   void weld(RawMesh& mesh) {
@@ -270,7 +332,9 @@ private:
   GltfDocument document_;
   const std::uint64_t most_bytes_;
   RawMesh mesh_;
-  bool closed_ = true; // every instance by itself
+  std::map<std::uint64_t, Size> sizes_; // of meshes
+  Size total_;                          // of all instances, before welding
+  bool closed_ = true;                  // every instance by itself
   bool targets_ = false;
   std::size_t welded_ = 0, collapsed_ = 0, mirrored_ = 0, skinned_ = 0;
 };

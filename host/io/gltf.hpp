@@ -2,7 +2,7 @@
 // (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html).
 //
 // The JSON comes from nlohmann's parser, not through tinygltf, which writes our GLB files: tinygltf recurses over what it
-// reads (a megabyte of nested lists in "extras" ends the program), decodes pictures' and buffers' data before anybody has
+// reads (half a megabyte of nested lists in "extras" ends the program), decodes pictures' and buffers' data before anybody has
 // looked at them, and leaves every bound to be checked here anyway.
 #pragma once
 
@@ -29,8 +29,8 @@ namespace cowgpu {
 ///
 /// Fills every field of RawMesh but `face_lines`; `sha256` is that of `bytes`. Every index is valid on return.
 ///
-/// Memory: of the mesh at most 32 MiB plus 4 times the file (instances that would take more are refused), and half as much
-/// while it grows from several meshes.
+/// Memory: of the mesh at most 32 MiB plus 4 times the file; instances that would take more, or more than 300,000
+/// primitives, are refused before they are made.
 ///
 /// Throws Error with
 /// - file_format: no glTF 2; points or lines; sparse accessors; positions that are not floats (KHR_mesh_quantization);

@@ -91,7 +91,7 @@ private:
     }
     if (attributes != 0)
       mesh_.notes.push_back(
-          fmt::format("The attribute bytes of {} facets, colours usually, were skipped.", attributes));
+          fmt::format("Attribute bytes, colours usually, were skipped (facets that have any: {}).", attributes));
     if (const std::size_t end = header_bytes + count * facet_bytes; end != bytes_.size())
       mesh_.notes.push_back(
           fmt::format("{} bytes after the last facet were ignored (from byte {}).", bytes_.size() - end, end));
@@ -178,7 +178,7 @@ private:
                                       "their coordinates are exactly equal.",
                                       corners, facets_, vertices));
     if (left_out != 0)
-      mesh_.notes.push_back(fmt::format("{} facets with two corners at one point were left out.", left_out));
+      mesh_.notes.push_back(fmt::format("Facets with two corners at one point were left out: {}.", left_out));
     if (100 * against_ > facets_)
       mesh_.notes.push_back(
           fmt::format("The normals of {} of {} facets look against the order of their corners; the order "
