@@ -28,6 +28,7 @@ seeds() {
     map_ply) echo ply ;;
     coefficient_csv | grid_csv) echo csv ;;
     coefficient_json) echo json ;;
+    shtools) echo sh ;;
     *) echo "$1" ;;
   esac
 }
@@ -54,7 +55,8 @@ run() {
 }
 
 if (($# == 0)); then
-  set -- off obj ply stl gltf mesh_format map_ply coefficient_csv coefficient_json grid_csv point
+  # mesh_format, which is all of the mesh readers at once, runs when it is asked for.
+  set -- off obj ply stl gltf map_ply coefficient_csv coefficient_json gfc shtools grid_csv point
 fi
 rm -f -- "$build/failed"
 for reader; do

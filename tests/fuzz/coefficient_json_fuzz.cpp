@@ -1,8 +1,8 @@
-#include "host/io/coefficient_file.hpp"
+#include "host/io/coefficient_formats.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace cowgpu;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return fuzz::run_on_file(data, size, ".json", [](const std::string& path) { read_coefficients(path); });
+  return fuzz::run_on_file(data, size, ".json", [](const std::string& path) { read_json_coefficients(path, ""); });
 }
