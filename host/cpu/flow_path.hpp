@@ -83,7 +83,7 @@ private:
     std::array<double, most_contacts> distances{}, weights{};
     std::array<std::uint32_t, most_contacts> faces{};
     std::array<bool, most_contacts> inside{};
-    Vec3 velocity;
+    Vec3 place, velocity;
     double distance = 0; ///< the least
     int count = 0;
     bool active(int i) const { return weights[std::size_t(i)] > 1e-9; }
@@ -111,10 +111,10 @@ private:
   };
 
   double small(double length, double distance) const;
-  View look(const Vec3& x) const;
+  void look(const Vec3& x, View& view) const;
   void tidy(View& view);
   void ask(Phase phase, const Vec3& place, std::uint32_t warm);
-  void go_on();
+  void go_on(View* known = nullptr);
   void leave();
   void lift(std::uint32_t face);
   void begin_ray(const Vec3& foot, const Vec3& normal, double distance, std::uint32_t face);
@@ -122,12 +122,12 @@ private:
   void end_ray();
   void begin_slide(const View& view);
   void check_slide(std::uint32_t face);
-  void end_slide();
+  void end_slide(View* view);
   void restart(std::uint32_t face);
   void take_in(std::uint32_t face, const Vec3& place);
   Vec3 advance(const View& from, double step, bool straight) const;
-  Vec3 slide_step(const Vec3& from, const Vec3& velocity, double step, double* error) const;
-  void balance(Vec3& x) const;
+  Vec3 slide_step(const Vec3& from, const Vec3& velocity, double step, View& view, double* error) const;
+  void balance(Vec3& x, View& view) const;
   bool straight(const View& from, const Vec3& to) const;
   double to_tie(const View& from, std::uint32_t face, double step, double gap, bool straight, Vec3& place);
   bool come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32_t& face) const;
