@@ -187,7 +187,12 @@ private:
              {"unfinished", way.report.unfinished}};
     if (way.report.passes == 0) return;
     double device = 0;
-    for (const KernelTime& kernel : way.report.kernels) device += kernel.seconds;
+    for (const KernelTime& kernel : way.report.kernels) {
+      device += kernel.seconds;
+      entry["kernels"][kernel.kernel] = kernel.seconds;
+      say("          {}: {:.2f} s on the device, {:.0f} % of the last flow\n", kernel.kernel, kernel.seconds,
+          100 * kernel.seconds / way.report.seconds);
+    }
     const auto answered = double(way.report.device_queries);
     say("          {} passes of {:.0f} queries; on the device {:.2f} s, {:.0f} % of the last flow, {:.0f} thousand "
         "queries a second there; {:.2f} % of the queries by the host\n",

@@ -57,6 +57,16 @@ public:
   /// Goes on to the next query or to the end, which it puts down in the call. Several threads may each have a run.
   void answer(std::uint32_t face);
 
+  /// For whoever goes on elsewhere after the first answer: where from, at which tolerance; the corners it passes; its end,
+  /// after which it is done or starts again.
+  const FlowPath& path() const { return path_; }
+  bool tighter() const { return again_; }
+  void pass(const Vec3& place, double time);
+  void arrive(const FlowEnd& found);
+
+  /// Of the second way.
+  static double tighter(double tolerance);
+
 private:
   FlowCall* call_;
   std::uint32_t start_;

@@ -65,8 +65,23 @@ double FlowPath::small(double length, double distance) const {
 
 FlowPath::FlowPath(const FlowSurface& surface, double time, double tolerance, FlowTrace* trace)
     : surface_(&surface), time_(time), tolerance_(tolerance), scale_(surface.diagonal()),
-      // A triangle that is nearer only during a step is not seen: closer looks at tighter tolerances.
-      longest_(std::clamp(0.5 * std::pow(tolerance / 1e-6, 1.0 / 6), 0.05, 0.5)), trace_(trace) {}
+      longest_(longest_step(tolerance)), most_steps_(most_steps(tolerance)), trace_(trace) {}
+
+// A triangle that is nearer only during a step is not seen: closer looks at tighter tolerances.
+double FlowPath::longest_step(double tolerance) {
+  return std::clamp(0.5 * std::pow(tolerance / 1e-6, 1.0 / 6), 0.05, 0.5);
+}
+
+double FlowPath::most_steps(double tolerance) {
+  return most_rounds / longest_step(tolerance);
+}
+
+FlowDeparture FlowPath::departure() const {
+  using Asks = FlowDeparture::Asks;
+  const Asks asks = phase_ == Phase::lift ? Asks::lift : phase_ == Phase::ray ? Asks::ray : Asks::last;
+  return {asks,           x_,           t_,         ball_.foot, ball_.normal,
+          ball_.distance, ball_.radius, ball_.face, inside_,    std::uint32_t(rounds_)};
+}
 
 void FlowPath::record() {
   if (!trace_) return;
@@ -462,8 +477,8 @@ void FlowPath::answer(std::uint32_t face) {
 
 // `view`: from x_, where it is known.
 void FlowPath::go_on(View* known) {
-  if (t_ >= time_ * (1 - 1e-14)) return ask(Phase::last, x_, warm_);
-  if (rounds_++ >= most_rounds / longest_) {
+  if (t_ >= time_ * (1 - time_digits)) return ask(Phase::last, x_, warm_);
+  if (rounds_++ >= most_steps_) {
     end_.flags |= flow_unfinished;
     return ask(Phase::last, x_, warm_);
   }

@@ -33,6 +33,18 @@ struct FlowEnd {
   std::uint32_t queries = 0, events = 0, steps = 0;
 };
 
+/// A path between its first query's answer and the next one's: all there is to know of it.
+struct FlowDeparture {
+  enum class Asks { lift, ray, last } asks = Asks::last; ///< what the query is for
+  Vec3 place = Vec3::Zero();
+  double time = 0;
+  Vec3 foot = Vec3::Zero(), normal = Vec3::Zero(); ///< of the ball about the query, but for `last`
+  double distance = 0, radius = 0;                 ///< of the place from the foot; of the ball
+  std::uint32_t face = 0;                          ///< of the foot
+  bool inside = false;                             ///< it ended before it came out of the body
+  std::uint32_t rounds = 0;
+};
+
 /// Corners of a path and their times, if asked for.
 struct FlowTrace {
   std::vector<Vec3> places;
@@ -60,6 +72,16 @@ public:
   void stop() { phase_ = Phase::done; }
 
   const FlowEnd& end() const { return end_; }
+
+  /// For whoever goes on with it elsewhere, after the first answer.
+  FlowDeparture departure() const;
+
+  /// Longest step of a slide, in distances from the surface, and the steps a path may take.
+  static double longest_step(double tolerance);
+  static double most_steps(double tolerance);
+
+  /// What a time that has come may lack.
+  static constexpr double time_digits = 1e-14;
 
 private:
   static constexpr int most_contacts = 8, most_faces = 6;
@@ -134,7 +156,7 @@ private:
   void record();
 
   const FlowSurface* surface_;
-  double time_, tolerance_, scale_, longest_;
+  double time_, tolerance_, scale_, longest_, most_steps_;
   FlowTrace* trace_;
   FlowEnd end_;
   Contacts contacts_;

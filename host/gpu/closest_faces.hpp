@@ -27,6 +27,13 @@ public:
   /// Searches for the queries named by `ids`, 1 to batch of them, neighbours in space next to each other. Throws Error.
   void search(std::span<const Vec3> queries, std::span<const std::uint32_t> ids);
 
+  /// The same without the search, for kernels that go on with it (engine::Flow); `ids` may be empty. Queries so far away that
+  /// single precision has nothing to decide are not to be among them.
+  void put(std::span<const Vec3> queries, std::span<const std::uint32_t> ids);
+  engine::Closest& kernel() { return *engine_; }
+  /// In the tree, of the device's triangles.
+  std::span<const std::uint32_t> slots() const { return slots_; }
+
   /// The closest faces of queries of the last search from `first`, a multiple of lane_queries, on; as
   /// cpu::closest_single has them. Safe from several threads. Throws Error(device_failed) where the device missed one.
   void decide(std::size_t first, std::span<const Vec3> points, std::uint32_t* faces);

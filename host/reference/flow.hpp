@@ -137,7 +137,7 @@ Vector<T> runge_kutta(Vector<T> x, T time, int steps, const Vector<T>& first, co
 /// embedded fourth-order result. `k1` is the slope at x.
 template <class T, class Direction>
 Vector<T> dormand_prince(const Vector<T>& x, T h, const Vector<T>& k1, const Direction& direction, T* error = nullptr) {
-  const Vector<T> k2 = direction(x + h / 5 * k1);
+  const Vector<T> k2 = direction(x + h * (T(1) / 5 * k1));
   const Vector<T> k3 = direction(x + h * (T(3) / 40 * k1 + T(9) / 40 * k2));
   const Vector<T> k4 = direction(x + h * (T(44) / 45 * k1 - T(56) / 15 * k2 + T(32) / 9 * k3));
   const Vector<T> k5 =
