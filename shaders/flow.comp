@@ -6,6 +6,10 @@
 // looks at the contacts; what it looks for stands in `look_for`, and what follows from the view stands below in the order
 // in which one thing may lead to the next. A point that is not through after push.turns goes on in the next dispatch.
 //
+// Most turns are those of steps off two contacts with a face each: sheets. For them there is a kernel of their own (FLOW_SHEET_ID)
+// without the rest, with three frames fetched once; a point that is to do something else leaves it for the other kernel, which
+// in turn does nothing that this one can.
+//
 // Software devices also end loops early without a word: every loop leaves a trace of having run to its end.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -13,6 +17,7 @@
 #include "shaders/flow.h"
 
 layout(local_size_x_id = COWGPU_LOCAL_SIZE_ID) in;
+layout(constant_id = FLOW_SHEET_ID) const bool sheet = false;
 
 layout(binding = FLOW_FRAMES) uniform usamplerBuffer frames;
 layout(std430, binding = FLOW_LANES) readonly buffer Lanes { uvec2 lanes[]; };
@@ -43,6 +48,7 @@ uint planned, done; // iterations of inner loops
 
 // The point.
 dvec3 x;
+double recorded; // time of FLOW_RECORDED; x is its place
 double t, carried; // carried: the step that the error of the last slide allows
 uint flags, marks, idle, rounds, queries, events, steps;
 uint count, counts; // contacts, and four bits each their faces
@@ -79,29 +85,36 @@ dvec3 velocity, extra_point;
 double view_distance, extra_distance;
 bool all_inside;
 
-// The frame of a triangle.
-dvec3 frame_a, frame_u, frame_v, frame_n;
-dvec4 frame_c; // length, cx, cy, c_inverse
-dvec3 frame_e; // ex, ey, e_inverse
+// A triangle's frame in its plane.
+struct Frame {
+  dvec3 a, u, v;
+  dvec4 c; // length, cx, cy, c_inverse
+  dvec3 e; // ex, ey, e_inverse
+};
+
+// On a sheet: the two contacts and what follows from them.
+Frame frame_0, frame_1, frame_extra;
+dvec3 normal_0, normal_1, point_0, point_1;
+double distance_0, distance_1;
 
 dvec2 texel(int i) {
   const uvec4 word = texelFetch(frames, i);
   return dvec2(packDouble2x32(word.xy), packDouble2x32(word.zw));
 }
 
-void fetch_frame(uint face) {
+Frame fetch_frame(uint face) {
   const int i = int(face) * FLOW_FRAME_TEXELS;
   const dvec2 t0 = texel(i), t1 = texel(i + 1), t2 = texel(i + 2), t3 = texel(i + 3), t4 = texel(i + 4);
-  const dvec2 t5 = texel(i + 5), t6 = texel(i + 6), t7 = texel(i + 7), t8 = texel(i + 8), t9 = texel(i + 9);
-  frame_a = dvec3(t0, t1.x);
-  frame_u = dvec3(t1.y, t2);
-  frame_v = dvec3(t3, t4.x);
-  frame_n = dvec3(t4.y, t5);
-  frame_c = dvec4(t6, t7);
-  frame_e = dvec3(t8, t9.x);
+  const dvec2 t6 = texel(i + 6), t7 = texel(i + 7), t8 = texel(i + 8), t9 = texel(i + 9);
+  return Frame(dvec3(t0, t1.x), dvec3(t1.y, t2), dvec3(t3, t4.x), dvec4(t6, t7), dvec3(t8, t9.x));
 }
 
-precise dvec3 face_normal(uint face) {
+dvec3 frame_normal(uint face) {
+  const int i = int(face) * FLOW_FRAME_TEXELS + 4;
+  return dvec3(texel(i).y, texel(i + 1));
+}
+
+dvec3 face_normal(uint face) {
   const int i = int(face) * FLOW_FRAME_TEXELS + 9;
   return dvec3(texel(i).y, texel(i + 1));
 }
@@ -182,14 +195,14 @@ uint nearest(uint query, dvec3 p, out uint status) {
     const uint word = candidates[lane.x + k];
     if ((word >> (CLOSEST_TRIANGLE_BITS + query % 4) & 1) == 0) continue;
     const uint face = face_of[word & ((1u << CLOSEST_TRIANGLE_BITS) - 1)];
-    fetch_frame(face);
-    precise dvec3 r = p - frame_a;
-    precise double px = dot3(frame_u, r), py = dot3(frame_v, r), pz = dot3(frame_n, r);
-    precise double dx = px - within(px, 0.0lf, frame_c.x), xb = px - frame_c.x;
+    const Frame f = fetch_frame(face);
+    precise dvec3 r = p - f.a;
+    precise double px = dot3(f.u, r), py = dot3(f.v, r), pz = dot3(frame_normal(face), r);
+    precise double dx = px - within(px, 0.0lf, f.c.x), xb = px - f.c.x;
     precise double d2 = dx * dx + py * py;
-    d2 = least(d2, edge_distance2(px, py, frame_c.y, frame_c.z, frame_c.w));
-    d2 = least(d2, edge_distance2(xb, py, frame_e.x, frame_e.y, frame_e.z));
-    precise double c_left = frame_c.y * py, c_right = frame_c.z * px, e_left = frame_e.y * xb, e_right = frame_e.x * py;
+    d2 = least(d2, edge_distance2(px, py, f.c.y, f.c.z, f.c.w));
+    d2 = least(d2, edge_distance2(xb, py, f.e.x, f.e.y, f.e.z));
+    precise double c_left = f.c.y * py, c_right = f.c.z * px, e_left = f.e.y * xb, e_right = f.e.x * py;
     const bool inside = 0 < py && c_left < c_right && e_left < e_right;
     precise double height2 = pz * pz;
     d2 = inside ? height2 : height2 + d2;
@@ -203,20 +216,19 @@ uint nearest(uint query, dvec3 p, out uint status) {
 }
 
 // The closest point of a face: FlowSurface::foot.
-void foot_on(uint face, out dvec3 point, out double distance, out bool inside) {
-  fetch_frame(face);
-  precise dvec3 r = at - frame_a;
-  precise double px = dot3(frame_u, r), py = dot3(frame_v, r), qx = px, qy = py;
-  precise double xb = px - frame_c.x;
-  precise double c_side = frame_c.y * py - frame_c.z * px, e_side = frame_e.x * py - frame_e.y * xb;
+void foot_on(Frame f, out dvec3 point, out double distance, out bool inside) {
+  precise dvec3 r = at - f.a;
+  precise double px = dot3(f.u, r), py = dot3(f.v, r), qx = px, qy = py;
+  precise double xb = px - f.c.x;
+  precise double c_side = f.c.y * py - f.c.z * px, e_side = f.e.x * py - f.e.y * xb;
   inside = py > 0 && c_side < 0 && e_side > 0;
-  precise double ax = within(px, 0.0lf, frame_c.x), a_gap = px - ax;
-  precise double c_along = (px * frame_c.y + py * frame_c.z) * frame_c.w;
-  precise double sc = within(c_along, 0.0lf, 1.0lf), cx = sc * frame_c.y, cy = sc * frame_c.z;
+  precise double ax = within(px, 0.0lf, f.c.x), a_gap = px - ax;
+  precise double c_along = (px * f.c.y + py * f.c.z) * f.c.w;
+  precise double sc = within(c_along, 0.0lf, 1.0lf), cx = sc * f.c.y, cy = sc * f.c.z;
   precise double cx_gap = px - cx, cy_gap = py - cy;
-  precise double e_along = (xb * frame_e.x + py * frame_e.y) * frame_e.z;
-  precise double se = within(e_along, 0.0lf, 1.0lf), ex = se * frame_e.x, ey = se * frame_e.y;
-  precise double ex_gap = xb - ex, ey_gap = py - ey, bx = frame_c.x + ex;
+  precise double e_along = (xb * f.e.x + py * f.e.y) * f.e.z;
+  precise double se = within(e_along, 0.0lf, 1.0lf), ex = se * f.e.x, ey = se * f.e.y;
+  precise double ex_gap = xb - ex, ey_gap = py - ey, bx = f.c.x + ex;
   precise double a2 = a_gap * a_gap + py * py, c2 = cx_gap * cx_gap + cy_gap * cy_gap;
   precise double e2 = ex_gap * ex_gap + ey_gap * ey_gap;
   const bool by_c = c2 < a2;
@@ -225,7 +237,7 @@ void foot_on(uint face, out dvec3 point, out double distance, out bool inside) {
     qx = by_e ? bx : by_c ? cx : ax;
     qy = by_e ? ey : by_c ? cy : 0.0lf;
   }
-  precise dvec3 q = frame_a + qx * frame_u + qy * frame_v;
+  precise dvec3 q = f.a + qx * f.u + qy * f.v;
   precise dvec3 way = at - q;
   point = q;
   distance = norm3(way);
@@ -322,7 +334,7 @@ void look(bool contacts) {
   while (faces_left > 0) {
     const bool own = c < count;
     const uint face = own ? faces[FLOW_CONTACT_FACES * c + k] : extra;
-    foot_on(face, point, distance, inside);
+    foot_on(fetch_frame(face), point, distance, inside);
     if (k == 0 || distance < best) {
       best_point = point;
       best = distance;
@@ -367,7 +379,26 @@ void look(bool contacts) {
   if (contacts && count > 2) least_norm();
 }
 
+// The same on a sheet.
+void look_on_sheet() {
+  bool inside_0, inside_1, inside;
+  foot_on(frame_0, point_0, distance_0, inside_0);
+  foot_on(frame_1, point_1, distance_1, inside_1);
+  foot_on(frame_extra, extra_point, extra_distance, inside);
+  precise dvec3 way_0 = at - point_0, way_1 = at - point_1;
+  precise dvec3 n0 = way_0 / distance_0, n1 = way_1 / distance_1;
+  if (!(distance_0 > 0)) n0 = face_normal(faces[0]);
+  if (!(distance_1 > 0)) n1 = face_normal(faces[FLOW_CONTACT_FACES]);
+  normal_0 = n0;
+  normal_1 = n1;
+  precise dvec3 sum = n0 + n1;
+  velocity = sum / 2;
+  view_distance = least(distance_0, distance_1);
+  all_inside = inside_0 && inside_1;
+}
+
 precise double active_distance() {
+  if (sheet) return view_distance;
   precise double near = view_distance;
   bool some = false;
   planned += count;
@@ -385,6 +416,11 @@ precise dvec3 point_of(uint i) { return dvec3(point_x[i], point_y[i], point_z[i]
 
 // Drops contacts that are farther than the nearest, joins those with the same nearest point. True if there were such.
 bool tidy() {
+  if (sheet) {
+    precise double far_off = view_distance + small(apart, view_distance), joined = same_point / 10 * view_distance;
+    precise double between = norm3(point_0 - point_1);
+    return distance_0 > far_off || distance_1 > far_off || !(between >= joined);
+  }
   precise double far = view_distance + small(apart, view_distance);
   precise double join = same_point / 10 * view_distance, room = (far - view_distance) / 10;
   bool changed = false;
@@ -469,10 +505,12 @@ void begin_ray(dvec3 foot, dvec3 normal, double distance, uint face) {
 
 void record() {
   marks |= FLOW_RECORDED;
-  points[place].place[0] = x.x;
-  points[place].place[1] = x.y;
-  points[place].place[2] = x.z;
-  points[place].time = t;
+  recorded = t;
+}
+
+// A step off two contacts of a face each is under way.
+bool on_sheet() {
+  return count == 2 && single_faces() && (look_for == for_line || look_for == for_stage || look_for == for_balance || look_for == for_tie || look_for == for_gap);
 }
 
 double load(uint number) { return numbers[number * push.capacity + place]; }
@@ -642,7 +680,7 @@ void depart() {
 
 void main() {
   if (gl_GlobalInvocationID.x >= push.entries) return;
-  const FlowEntry entry = entries[gl_GlobalInvocationID.x];
+  const FlowEntry entry = entries[push.first + gl_GlobalInvocationID.x];
   place = entry.place;
   planned = 0;
   done = 0;
@@ -682,24 +720,34 @@ void main() {
   precise double longest = tighter ? push.longest[1] : push.longest[0];
   precise double most_rounds = tighter ? push.rounds[1] : push.rounds[0];
 
+  if (sheet) {
+    frame_0 = fetch_frame(faces[0]);
+    frame_1 = fetch_frame(faces[FLOW_CONTACT_FACES]);
+    const uint third = entry.what == FLOW_RESUME ? nearer : face;
+    frame_extra = fetch_frame(third == FLOW_NO_FACE ? faces[0] : third);
+  }
+
   asking = false;
-  bool ended = false;
+  bool ended = false, elsewhere = false;
   uint turns = 0;
   do {
     const uint looked_for = look_for;
-    look(looked_for >= for_check);
+    if (sheet)
+      look_on_sheet();
+    else
+      look(looked_for >= for_check);
     bool go_on = false, viewed = false, slide_ended = false, slide_over = false, settled = looked_for == for_velocity;
     bool seek = false, step_on = false;
 
-    if (looked_for == for_last) ended = true;
-    if (looked_for == for_restart) {
+    if (!sheet && looked_for == for_last) ended = true;
+    if (!sheet && looked_for == for_restart) {
       count = 0;
       add_contact(extra);
       idle = 0;
       carried = 0;
       go_on = true;
     }
-    if (looked_for == for_lift) {
+    if (!sheet && looked_for == for_lift) {
       precise double enough = radius - small(rounding, radius);
       if (extra_distance >= enough) {
         begin_ray(ball_foot, ball_normal, 0, ball_face);
@@ -712,7 +760,7 @@ void main() {
         ask(FLOW_RESTART, x);
       }
     }
-    if (looked_for == for_ray) {
+    if (!sheet && looked_for == for_ray) {
       precise double inner = radius - small(rounding, radius);
       precise dvec3 way = extra_point - ball_foot;
       precise double height = dot3(way, ball_normal), smaller = dot3(way, way) / (2 * height);
@@ -782,8 +830,16 @@ void main() {
       precise dvec3 n0 = dvec3(0), n1 = n0, n2 = n0;
       precise double d0 = 0, d1 = 0, d2 = 0;
       uint m = 0;
-      planned += count;
-      for (uint c = 0; c < count; ++c) {
+      if (sheet) {
+        n0 = normal_0;
+        n1 = normal_1;
+        d0 = distance_0;
+        d1 = distance_1;
+        m = 2;
+      }
+      const uint all = sheet ? 0 : count;
+      planned += all;
+      if (!sheet) for (uint c = 0; c < all; ++c) {
         ++done;
         if (!(weights[c] > 1e-9lf)) continue;
         if (m == 0) n0 = normal_of(c), d0 = distances[c];
@@ -794,7 +850,7 @@ void main() {
       precise dvec3 a = n1 - n0, b = n2 - n0;
       precise double ra = d0 - d1, rb = d0 - d2, aa = dot3(a, a), bb = dot3(b, b), ab = dot3(a, b);
       precise double determinant = aa * bb - ab * ab, thin = 1e-14lf * aa * bb;
-      const bool pair = m == 2;
+      const bool pair = sheet || m == 2;
       const bool moves = m >= 2 && aa > 1e-16lf && (pair || determinant > thin);
       precise double alone = ra / aa, both_a = (ra * bb - rb * ab) / determinant;
       precise double both_b = (rb * aa - ra * ab) / determinant;
@@ -893,7 +949,7 @@ void main() {
       at = slide_end;
       extra = nearer;
     }
-    if (looked_for == for_nearer) {
+    if (!sheet && looked_for == for_nearer) {
       precise double join = same_point * view_distance;
       ++events;
       uint c = 0;
@@ -939,7 +995,8 @@ void main() {
     }
     if (tidied || looked_for == for_contacts) {
       const bool changed = tidy();
-      look_for = for_velocity;
+      elsewhere = sheet && changed;
+      look_for = elsewhere ? for_contacts : for_velocity;
       at = x;
       extra = FLOW_NO_FACE;
       settled = !changed;
@@ -948,7 +1005,7 @@ void main() {
       if (dot3(velocity, velocity) < 1e-16lf) {
         flags |= stationary_flag;
         ask(FLOW_LAST, x);
-      } else if (count == 1) {
+      } else if (!sheet && count == 1) {
         begin_ray(point_of(0), normal_of(0), view_distance, nearest_face);
       } else {
         if ((flags & slid_flag) == 0) {
@@ -998,10 +1055,21 @@ void main() {
       look_for = stage == 7 && in_tie ? for_balance : for_stage;
       round_of_balance = 0;
     }
+    // Each kernel leaves to the other what that does better, or at all.
+    if (sheet)
+      elsewhere = elsewhere || look_for == for_nearer;
+    else
+      elsewhere = on_sheet();
     ++turns;
-  } while (!asking && !ended && turns < push.turns);
+  } while (!asking && !ended && !elsewhere && turns < push.turns);
 
   const bool busy = !asking && !ended;
+  if ((marks & FLOW_RECORDED) != 0) {
+    points[place].place[0] = x.x;
+    points[place].place[1] = x.y;
+    points[place].place[2] = x.z;
+    points[place].time = recorded;
+  }
   if (ended) {
     points[place].place[0] = x.x;
     points[place].place[1] = x.y;
@@ -1025,8 +1093,10 @@ void main() {
     points[place].query[2] = asked.z;
     points[place].phase = phase;
   }
+  if (asking ? phase == FLOW_SLIDE && count == 2 && single_faces() : !ended && (sheet ? !elsewhere : on_sheet()))
+    marks |= FLOW_ON_SHEET;
   points[place].marks = marks;
   status = ended ? FLOW_DONE : asking ? FLOW_ASKS : FLOW_BUSY;
-  if (done != planned || (busy && turns < push.turns)) status = FLOW_CUT;
+  if (done != planned || (busy && turns < push.turns && !elsewhere)) status = FLOW_CUT;
   points[place].status = status;
 }

@@ -3,6 +3,9 @@
 #define COWGPU_SHADERS_FLOW_H
 #include "shaders/layout.h"
 
+// Specialization constant: the kernel of points on sheets (FLOW_ON_SHEET) alone.
+#define FLOW_SHEET_ID 1
+
 #define FLOW_FRAMES 0     // texels of two doubles, FLOW_FRAME_TEXELS a face: a, u, v, n, length, cx, cy, c_inverse, ex, ey,
                           // e_inverse (TriangleFrame of host/plan/closest_tree.hpp), then the outward normal
 #define FLOW_LANES 1      // CLOSEST_LANES of shaders/closest.h
@@ -51,6 +54,7 @@
 #define FLOW_INSIDE 1u   // it ended before it came out of the body
 #define FLOW_TIGHTER 2u  // it takes the second tolerance
 #define FLOW_RECORDED 4u // out: it passed FlowPoint::place at FlowPoint::time
+#define FLOW_ON_SHEET 8u // out: it slides off two contacts with a face each
 
 #ifdef __cplusplus
 namespace cowgpu::shaders {
@@ -94,7 +98,7 @@ struct FlowPush {
   uint entries;
   uint capacity; // places of the arrays
   uint turns;    // of the loop an invocation may make
-  uint unused;
+  uint first;    // entry
 };
 
 #ifdef __cplusplus

@@ -37,7 +37,7 @@ inline constexpr std::uint32_t flow_no_face = 0xffffffffU;
 enum class FlowAsks : std::uint32_t { lift, ray, restart, slide, last };
 enum class FlowStatus : std::uint32_t { asks, busy, found, left, done, cut };
 struct FlowPlace {
-  static constexpr std::uint32_t inside = 1, tighter = 2, recorded = 4; // marks
+  static constexpr std::uint32_t inside = 1, tighter = 2, recorded = 4, on_sheet = 8; // marks
   double query[3], place[3], time, foot[3], normal[3], distance, radius;
   FlowAsks phase;
   FlowStatus status;
@@ -60,9 +60,10 @@ public:
   std::span<FlowPlace> places();
   std::span<FlowTask> tasks();
 
-  /// Searches for the queries last put into `closest`, if there are any, and runs the first `tasks` of tasks(). Throws
+  /// Searches for the queries last put into `closest`, if there are any, and runs the first `tasks` of tasks(), the last
+  /// `sheets` of them, which are marked on_sheet, by the kernel for those. Throws
   /// Error(cut_short) where the device ended a loop early, Error(vulkan), Error(device_lost).
-  void pass(Closest& closest, bool search, const FlowNumbers& numbers, std::uint32_t tasks);
+  void pass(Closest& closest, bool search, const FlowNumbers& numbers, std::uint32_t tasks, std::uint32_t sheets);
 
   /// Device bytes of a surface, and of so many points.
   static std::uint64_t surface_bytes(std::uint64_t faces);
@@ -71,8 +72,8 @@ public:
 private:
   struct Batch;
   Device& device_;
-  const Kernel* kernel_ = nullptr;
-  std::uint32_t turns_ = 0;
+  const Kernel *kernel_ = nullptr, *sheet_kernel_ = nullptr;
+  std::uint32_t turns_ = 0, sheet_turns_ = 0;
   std::unique_ptr<Buffer> frames_, face_of_;
   std::unique_ptr<Batch> batch_;
 };

@@ -86,6 +86,7 @@ private:
     Live& live = live_[place];
     live.what = FlowWhat::find;
     put(live.run.query(), device_.places()[place].query);
+    device_.places()[place].marks = 0;
     answer_far(place);
   }
 
@@ -93,6 +94,14 @@ private:
   void answer_far(std::uint32_t place) {
     const Vec3 query = vector(device_.places()[place].query);
     live_[place].face = surface_.tree().is_far(query) ? surface_.nearest(query, no_face) : no_face;
+  }
+
+  bool is_sliding(std::uint32_t place) const {
+    return live_[place].what == FlowWhat::go_on && device_.places()[place].phase == engine::FlowAsks::slide;
+  }
+  bool is_on_sheet(std::uint32_t place) const {
+    return live_[place].what != FlowWhat::find && live_[place].what != FlowWhat::depart &&
+           (device_.places()[place].marks & FlowPlace::on_sheet);
   }
 
   // One event of each.
@@ -104,25 +113,28 @@ private:
     };
     queries_.clear();
     asking_.clear();
-    std::size_t count = 0;
-    for (const std::uint32_t place : going_) {
+    for (const std::uint32_t place : going_)
       if (asks(place)) {
         queries_.push_back(vector(places[place].query));
         asking_.push_back(place);
-      } else {
-        tasks[count++] = {place, live_[place].what, live_[place].face, 0};
       }
-    }
     const std::vector<std::uint32_t> order = surface_.order(queries_, 0);
     faces_.put(queries_, order);
-    // Points with little to do next to each other.
-    for (const bool slides : {false, true})
-      for (std::size_t i = 0; i < order.size(); ++i) {
-        const std::uint32_t place = asking_[order[i]];
-        const bool slide = live_[place].what == FlowWhat::go_on && places[place].phase == engine::FlowAsks::slide;
-        if (slide == slides) tasks[count++] = {place, live_[place].what, no_face, std::uint32_t(i)};
-      }
-    device_.pass(faces_.kernel(), !queries_.empty(), numbers_, std::uint32_t(count));
+    // Points with as much to do next to each other, those on sheets last.
+    std::size_t count = 0, others = 0;
+    for (const bool sheet : {false, true}) {
+      for (const bool slides : {false, true})
+        for (std::size_t i = 0; i < order.size(); ++i) {
+          const std::uint32_t place = asking_[order[i]];
+          if (is_on_sheet(place) == sheet && (sheet || is_sliding(place)) == slides)
+            tasks[count++] = {place, live_[place].what, no_face, std::uint32_t(i)};
+        }
+      for (const std::uint32_t place : going_)
+        if (!asks(place) && is_on_sheet(place) == sheet)
+          tasks[count++] = {place, live_[place].what, live_[place].face, 0};
+      if (!sheet) others = count;
+    }
+    device_.pass(faces_.kernel(), !queries_.empty(), numbers_, std::uint32_t(count), std::uint32_t(count - others));
     report.device_moves += count;
     report.device_queries += order.size();
     std::atomic<std::uint64_t> left = 0;
