@@ -692,7 +692,7 @@ void main() {
   if (done != planned) status = FLOW_CUT;
   if (status != FLOW_ASKS) {
     points[place].status = status;
-    points[place].face = face;
+    if (status == FLOW_FOUND) points[place].face = face;
     return;
   }
 

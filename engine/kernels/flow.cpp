@@ -54,13 +54,12 @@ Flow::Flow(Device& device, const FlowInput& input) : device_(device) {
                     texels / FLOW_FRAME_TEXELS, device.name(), device.limits().maxTexelBufferElements));
   // However invocations run in step, a turn makes no more than this.
   if (input.iteration_budget >= FLOW_OTHER_ITERATIONS)
-    turns_ = std::min(getenv("TURNS") ? std::uint32_t(atoi(getenv("TURNS"))) : most_turns,
-                      (input.iteration_budget - FLOW_OTHER_ITERATIONS) / (FLOW_TURN_ITERATIONS + 1));
+    turns_ = std::min(most_turns, (input.iteration_budget - FLOW_OTHER_ITERATIONS) / (FLOW_TURN_ITERATIONS + 1));
   if (turns_ == 0)
     throw Error(Failure::out_of_range, 0,
                 fmt::format("{} loop iterations an invocation leave a point of a flow no turn; {} are the least",
                             input.iteration_budget, FLOW_OTHER_ITERATIONS + FLOW_TURN_ITERATIONS + 1));
-  sheet_turns_ = std::min(getenv("STURNS") ? std::uint32_t(atoi(getenv("STURNS"))) : most_sheet_turns, input.iteration_budget - FLOW_OTHER_ITERATIONS);
+  sheet_turns_ = std::min(most_sheet_turns, input.iteration_budget - FLOW_OTHER_ITERATIONS);
   const auto kernel = [&](const char* name, bool sheet) {
     return &device.kernel({name,
                            shaders::flow,

@@ -41,7 +41,7 @@ public:
   void run(Monitor& monitor, FlowReport& report) {
     const auto size = double(std::max<std::size_t>(1, call_.size()));
     const std::size_t room = std::min(most_live, call_.size());
-    if (room > 0) device_.reserve(std::uint32_t(room));
+    if (room > 0) translated([&] { device_.reserve(std::uint32_t(room)); });
     live_.reserve(room);
     for (fill(); !going_.empty(); fill()) {
       check_stop(monitor);
@@ -149,7 +149,8 @@ private:
   bool take_over(std::uint32_t place) {
     Live& live = live_[place];
     FlowPlace& point = device_.places()[place];
-    if (point.marks & FlowPlace::recorded) live.run.pass(vector(point.place), point.time);
+    if (point.status != FlowStatus::left && (point.marks & FlowPlace::recorded))
+      live.run.pass(vector(point.place), point.time);
     switch (point.status) {
     case FlowStatus::asks:
       live.what = FlowWhat::go_on;
