@@ -152,7 +152,16 @@ void FlowRun::pass(const Vec3& place, double time) {
   if (FlowTrace* const kept = call_->trace(start_)) {
     kept->places.push_back(place);
     kept->times.push_back(time);
+    ++passed_;
   }
+}
+
+void FlowRun::go_back() {
+  if (FlowTrace* const kept = call_->trace(start_)) {
+    kept->places.resize(kept->places.size() - passed_);
+    kept->times.resize(kept->places.size());
+  }
+  passed_ = 0;
 }
 
 void FlowRun::arrive(const FlowEnd& found) {
@@ -160,6 +169,7 @@ void FlowRun::arrive(const FlowEnd& found) {
   FlowEnd end = found;
   if ((end.flags & flow_unfinished) && !again_) {
     again_ = true;
+    passed_ = 0;
     first_ = end;
     path_ = FlowPath(call.surface_, call.options_.time, tighter(call.options_.tolerance), call.trace(start_));
     return path_.start(call.starts_[start_], call.normals_.empty() ? Vec3(Vec3::Zero()) : call.normals_[start_]);

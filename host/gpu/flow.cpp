@@ -21,6 +21,9 @@ using engine::FlowWhat;
 
 constexpr std::size_t most_live = std::size_t(1) << 15; // points on their way at once
 constexpr std::size_t part = 256;                       // points a thread takes at a time
+// So few are the host's after so many passes without a new start: some paths have thousands of steps, and a pass costs more
+// than the host's way from the start.
+constexpr std::size_t few_live = 128, most_passes = 256;
 static_assert(most_live <= ClosestFaces::batch);
 static_assert(engine::flow_no_face == no_face);
 
@@ -43,11 +46,22 @@ public:
     const std::size_t room = std::min(most_live, call_.size());
     if (room > 0) translated([&] { device_.reserve(std::uint32_t(room)); });
     live_.reserve(room);
-    for (fill(); !going_.empty(); fill()) {
+    for (fill(); !going_.empty() && (going_.size() > few_live || passes_ < most_passes); fill()) {
       check_stop(monitor);
       monitor.progress("flowing points", double(next_ - going_.size()) / size);
       translated([&] { pass(report); });
       ++report.passes;
+      ++passes_;
+    }
+    parallel_for(0, going_.size(), [&](std::size_t i, unsigned) {
+      check_stop(monitor);
+      cpu::FlowRun& run = live_[going_[i]].run;
+      run.go_back();
+      while (!run.done()) run.answer(surface_.nearest(run.query(), run.warm()));
+    });
+    for (const std::uint32_t place : going_) {
+      report.device_queries -= live_[place].answers;
+      report.device_moves -= live_[place].moves;
     }
     monitor.progress("flowing points", 1);
   }
@@ -56,7 +70,8 @@ private:
   struct Live {
     cpu::FlowRun run;
     FlowWhat what = FlowWhat::find;
-    std::uint32_t face = no_face; // the answer, if the host gave it
+    std::uint32_t face = no_face;         // the answer, if the host gave it
+    std::uint32_t answers = 0, moves = 0; // by the device
   };
 
   // Those that ended give their places to new starts.
@@ -69,6 +84,7 @@ private:
       if (live_[place].run.done()) {
         if (next_ == order.size()) continue;
         live_[place] = {cpu::FlowRun(call_, order[next_++])};
+        passes_ = 0;
         begin(place);
       }
       going_[to++] = place;
@@ -135,35 +151,45 @@ private:
       if (!sheet) others = count;
     }
     device_.pass(faces_.kernel(), !queries_.empty(), numbers_, std::uint32_t(count), std::uint32_t(count - others));
-    report.device_moves += count;
-    report.device_queries += order.size();
-    std::atomic<std::uint64_t> left = 0;
+    std::atomic<std::uint64_t> answers = 0, moves = 0;
     parallel_for(0, (going_.size() + part - 1) / part, [&](std::size_t task, unsigned) {
-      for (std::size_t i = task * part; i < std::min(going_.size(), (task + 1) * part); ++i)
-        left += take_over(going_[i]) ? 0 : 1;
+      for (std::size_t i = task * part; i < std::min(going_.size(), (task + 1) * part); ++i) {
+        Live& live = live_[going_[i]];
+        const bool asked = asks(going_[i]);
+        const FlowStatus status = take_over(going_[i]);
+        const bool answered = asked && status != FlowStatus::left;
+        const bool moved = status == FlowStatus::asks || status == FlowStatus::done;
+        answers += answered;
+        moves += moved;
+        live.answers += answered;
+        live.moves += moved;
+      }
     });
-    report.device_queries -= left;
+    report.device_moves += moves;
+    report.device_queries += answers;
   }
 
-  // What became of a point. False if its query was left to the host.
-  bool take_over(std::uint32_t place) {
+  // What became of a point.
+  FlowStatus take_over(std::uint32_t place) {
     Live& live = live_[place];
     FlowPlace& point = device_.places()[place];
-    if (point.status != FlowStatus::left && (point.marks & FlowPlace::recorded))
+    const FlowStatus status = point.status;
+    if (status != FlowStatus::left && (point.marks & FlowPlace::recorded))
       live.run.pass(vector(point.place), point.time);
-    switch (point.status) {
+    switch (status) {
     case FlowStatus::asks:
       live.what = FlowWhat::go_on;
       answer_far(place);
-      return true;
+      break;
     case FlowStatus::busy:
       live.what = FlowWhat::resume;
       live.face = no_face;
-      return true;
-    case FlowStatus::found: depart(place, point.face); return true;
-    case FlowStatus::left: live.face = surface_.nearest(vector(point.query), no_face); return false;
-    default: arrive(place); return true;
+      break;
+    case FlowStatus::found: depart(place, point.face); break;
+    case FlowStatus::left: live.face = surface_.nearest(vector(point.query), no_face); break;
+    default: arrive(place);
     }
+    return status;
   }
 
   // The first answer is taken by the host, which has the winding numbers.
@@ -210,7 +236,9 @@ private:
     end.events = point.events;
     end.steps = point.steps;
     live_[place].run.arrive(end);
-    if (!live_[place].run.done()) begin(place);
+    if (live_[place].run.done()) return;
+    live_[place].answers = live_[place].moves = 0;
+    begin(place);
   }
 
   cpu::FlowCall& call_;
@@ -222,7 +250,8 @@ private:
   std::vector<std::uint32_t> going_;  // places in use
   std::vector<std::uint32_t> asking_; // those of queries_
   std::vector<Vec3> queries_;
-  std::size_t next_ = 0; // of the call's order
+  std::size_t next_ = 0;   // of the call's order
+  std::size_t passes_ = 0; // since the last start
 };
 
 class GpuFlow final : public DistanceFlow {
