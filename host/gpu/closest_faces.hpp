@@ -1,7 +1,7 @@
 // Closest faces on a device, for the verbs `closest` and `flow`. The device lists the faces that may be the closest in single
-// precision; among them the host decides with the code of the CPU path, so that both give the same bits. A query has about
-// one candidate: deciding costs 7 % of the search on lavapipe and leaves fp64 out of the shader. Searches the device gives
-// up (too many steps or candidates), and queries too far away for single precision, are the host's as well.
+// precision. Among them the host decides for `closest`, with the code of the CPU path: a query has about one candidate, and
+// deciding costs 7 % of the search on lavapipe. For `flow` its shader decides, in the same way; both give the same bits.
+// Searches the device gives up (too many steps or candidates), and queries too far away for single precision, are the host's.
 #pragma once
 
 #include "engine/kernels/closest.hpp"

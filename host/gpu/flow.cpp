@@ -43,9 +43,9 @@ public:
 
   void run(Monitor& monitor, FlowReport& report) {
     const auto size = double(std::max<std::size_t>(1, call_.size()));
-    const std::size_t room = std::min(most_live, call_.size());
-    if (room > 0) translated([&] { device_.reserve(std::uint32_t(room)); });
-    live_.reserve(room);
+    room_ = std::min(most_live, call_.size());
+    if (room_ > 0) translated([&] { device_.reserve(std::uint32_t(room_)); });
+    live_.reserve(room_);
     for (fill(); !going_.empty() && (going_.size() > few_live || passes_ < most_passes); fill()) {
       check_stop(monitor);
       monitor.progress("flowing points", double(next_ - going_.size()) / size);
@@ -90,7 +90,7 @@ private:
       going_[to++] = place;
     }
     going_.resize(to);
-    while (live_.size() < live_.capacity() && next_ < order.size()) {
+    while (live_.size() < room_ && next_ < order.size()) {
       live_.push_back({cpu::FlowRun(call_, order[next_++])});
       going_.push_back(std::uint32_t(live_.size() - 1));
       begin(going_.back());
@@ -250,6 +250,7 @@ private:
   std::vector<std::uint32_t> going_;  // places in use
   std::vector<std::uint32_t> asking_; // those of queries_
   std::vector<Vec3> queries_;
+  std::size_t room_ = 0;
   std::size_t next_ = 0;   // of the call's order
   std::size_t passes_ = 0; // since the last start
 };
@@ -320,7 +321,7 @@ MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std
       ClosestFaces::device_bytes(faces, live) + engine::Flow::surface_bytes(faces) + engine::Flow::batch_bytes(live);
   // The device's tree is built beside a tree of boxes, and both are given up.
   need.host = cpu::distance_flow_bytes(vertices, faces, starts) + 360 * faces + need.device +
-              live * (sizeof(cpu::FlowRun) + sizeof(Vec3) + 32);
+              live * (sizeof(cpu::FlowRun) + sizeof(Vec3) + 48);
   return need;
 }
 
