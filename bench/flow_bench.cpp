@@ -187,16 +187,23 @@ private:
              {"unfinished", way.report.unfinished}};
     if (way.report.passes == 0) return;
     double device = 0;
-    for (const KernelTime& kernel : way.report.kernels) device += kernel.seconds;
+    for (const KernelTime& kernel : way.report.kernels) {
+      device += kernel.seconds;
+      entry["kernels"][kernel.kernel] = kernel.seconds;
+      say("          {}: {:.2f} s on the device, {:.0f} % of the last flow\n", kernel.kernel, kernel.seconds,
+          100 * kernel.seconds / way.report.seconds);
+    }
     const auto answered = double(way.report.device_queries);
-    say("          {} passes of {:.0f} queries; on the device {:.2f} s, {:.0f} % of the last flow, {:.0f} thousand "
-        "queries a second there; {:.2f} % of the queries by the host\n",
+    say("          {} passes of {:.0f} queries; on the device {:.2f} s, {:.0f} % of the last flow; {:.2f} % of the "
+        "queries "
+        "answered by the host, {:.1f} % of the answers taken on by it\n",
         way.report.passes, answered / double(way.report.passes), device, 100 * device / way.report.seconds,
-        answered / device / 1e3, 100 * (1 - answered / queries));
+        100 * (1 - answered / queries), 100 * (1 - double(way.report.device_moves) / queries));
     entry["passes"] = way.report.passes;
     entry["device_seconds"] = device;
     entry["device_share"] = device / way.report.seconds;
     entry["device_queries"] = way.report.device_queries;
+    entry["device_moves"] = way.report.device_moves;
   }
 
   Options options_;

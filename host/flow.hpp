@@ -62,6 +62,7 @@ struct FlowReport {
   double seconds = 0;
   std::uint64_t passes = 0;         ///< of the device over all points on their way; 0 on the CPU path
   std::uint64_t device_queries = 0; ///< of the queries those that the device answered
+  std::uint64_t device_moves = 0;   ///< of the answers those from which the device took the point on
   std::vector<KernelTime> kernels;  ///< empty on the CPU path
 };
 

@@ -1,9 +1,11 @@
-// The Vulkan path of the verb `flow`: wavefronts that are filled again, a wish to stop between passes, what the device did.
-// That both paths give the same bits at odd sizes stands in flow_test.cpp.
+// The Vulkan path of the verb `flow`: the CPU path's bits for all that may befall a point, wavefronts that are filled again,
+// points that run out of turns, a wish to stop between passes, what the device did.
 #include "host/backend.hpp"
 #include "host/error.hpp"
+#include "host/io/mesh_source.hpp"
 #include "host/mesh/triangle_surface.hpp"
 #include "host/spectrum/surface_distance.hpp"
+#include "tests/support/compare_closest.hpp"
 #include "tests/support/compare_flows.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/meshes.hpp"
@@ -25,6 +27,37 @@ FlowOptions forward(double time) {
   FlowOptions options;
   options.time = time;
   return options;
+}
+
+// A call on both paths, corners included, with nothing from the validation layer. Returns the device's report.
+FlowReport check_as_on_cpu(const RawMesh& mesh, const std::vector<Vec3>& starts, FlowOptions options,
+                           std::uint32_t iteration_budget = GpuOptions{}.iteration_budget,
+                           const std::vector<Vec3>& normals = {}) {
+  GpuOptions gpu_options;
+  gpu_options.iteration_budget = iteration_budget;
+  const auto gpu = gpu_backend(gpu_options);
+  options.streamlines = true;
+  Monitor silent;
+  FlowReport found, expected;
+  check_same(
+      gpu->distance_flow(mesh.vertices, mesh.faces)->flow(starts, normals, options, silent, &found),
+      make_cpu_backend()->distance_flow(mesh.vertices, mesh.faces)->flow(starts, normals, options, silent, &expected));
+  CHECK((found.queries == expected.queries && found.events == expected.events && found.steps == expected.steps));
+  if (options.backward) CHECK(found.device_moves == 0);
+  // The host takes on points with a very long way.
+  if (!options.backward && found.passes < 256) CHECK(found.device_moves == found.queries - found.points);
+  CHECK(gpu->validation_messages() == std::vector<std::string>{});
+  return found;
+}
+
+// A box round a cavity: flows in it meet up to eight sides, edges and corners and end in the middle.
+RawMesh hollow(const RawMesh& cavity) {
+  return together(box({6, 6, 6}, {-3, -3, -3}), flipped(cavity));
+}
+
+// As many starts as asked for all over the body's box and a bit more.
+std::vector<Vec3> starts_about(const RawMesh& mesh, std::size_t count) {
+  return queries_in_box(mesh, count, 1.3, std::uint32_t(count));
 }
 
 } // namespace
@@ -49,13 +82,72 @@ TEST_CASE("a flow of more points than are on their way at once is the CPU path's
   CHECK(report.steps == on_cpu.steps);
   CHECK(report.device_queries > report.queries * 99 / 100);
   CHECK(report.device_queries <= report.queries);
-  REQUIRE(report.kernels.size() == 1);
-  CHECK(report.kernels[0].kernel == "closest");
-  CHECK(report.kernels[0].dispatches == report.passes);
-  CHECK(report.kernels[0].seconds > 0);
-  CHECK(report.seconds > report.kernels[0].seconds);
+  // From every answer but the first of each point the device went on by itself.
+  CHECK(report.device_moves == report.queries - report.points);
+  REQUIRE(report.kernels.size() == 3);
+  double seconds = 0;
+  const char* const names[] = {"closest", "flow", "flow_sheet"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    CHECK(report.kernels[k].kernel == names[k]);
+    CHECK((report.kernels[k].dispatches > report.passes / 2 && report.kernels[k].dispatches <= report.passes));
+    CHECK(report.kernels[k].seconds > 0);
+    seconds += report.kernels[k].seconds;
+  }
+  CHECK(report.seconds > seconds);
   CHECK((on_cpu.passes == 0 && on_cpu.device_queries == 0 && on_cpu.kernels.empty()));
   CHECK(gpu->validation_messages() == std::vector<std::string>{});
+}
+
+TEST_CASE("off bodies of all kinds flows on Vulkan have the CPU path's bits, forward and backward", "[flow][vulkan]") {
+  if (no_device()) return;
+  std::vector<RawMesh> bodies = {box({1, 2, 3}), tetrahedron({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}),
+                                 two_balls(2, 0.8), hollow(box({2, 3, 3.5}, {-1, -1, -1})), hollow(icosphere(1))};
+  for (const RawMesh& mesh : bodies)
+    for (const std::size_t count : {0, 1, 7, 13, 1025}) {
+      CAPTURE(mesh.faces.size(), count);
+      const std::vector<Vec3> starts = starts_about(mesh, count);
+      FlowOptions options = forward(0.7);
+      const FlowReport report = check_as_on_cpu(mesh, starts, options);
+      if (count > 1000 && mesh.faces.size() > 12) CHECK(report.slid > 40);
+      options.backward = true;
+      check_as_on_cpu(mesh, starts, options);
+    }
+}
+
+TEST_CASE("points that meet many contacts, stand still or are left to the host have the CPU path's bits on Vulkan",
+          "[flow][vulkan]") {
+  if (no_device()) return;
+  // About the middle of a ball more faces are equally near than a search lists.
+  for (const RawMesh& cavity : {box({2, 2, 2}, {-1, -1, -1}), icosphere(1), icosphere(3)}) {
+    const RawMesh mesh = hollow(cavity);
+    std::vector<Vec3> starts;
+    for (const Vec3& p : queries_in_box(cavity, 200, 0.5, 3)) starts.push_back(p);
+    CAPTURE(cavity.faces.size());
+    const FlowReport report = check_as_on_cpu(mesh, starts, forward(4));
+    CHECK(report.stationary > 150);
+    CHECK((report.device_queries < report.queries) == (cavity.faces.size() > 1000));
+  }
+}
+
+TEST_CASE("the cows flow on Vulkan as on the CPU, at any tolerance and budget of loop iterations", "[flow][vulkan]") {
+  if (no_device()) return;
+  const RawMesh cow = load_mesh("builtin:cow");
+  FlowOptions options = forward(0.4);
+  for (const double tolerance : {1e-3, 1e-6, 1e-10}) {
+    options.tolerance = tolerance;
+    for (const std::uint32_t budget : {GpuOptions{}.iteration_budget, 2600U}) {
+      CAPTURE(tolerance, budget);
+      check_as_on_cpu(cow, area_samples(cow.vertices, cow.faces, 150), options, budget);
+    }
+  }
+  const auto benchmark = benchmark_cow();
+  if (!benchmark) return skip_without_cow();
+  const RawMesh& mesh = benchmark->mesh();
+  FlowReport report = check_as_on_cpu(mesh, area_samples(mesh.vertices, mesh.faces, 1025), forward(0.2));
+  CHECK((report.slid > 800 && report.inside > 0));
+  report = check_as_on_cpu(mesh, mesh.vertices, forward(0.2), GpuOptions{}.iteration_budget,
+                           vertex_normals(mesh.vertices, mesh.faces));
+  CHECK(report.slid > 2000);
 }
 
 TEST_CASE("a flow on Vulkan outlives its backend and takes starts inside, far away and on edges", "[flow][vulkan]") {

@@ -87,6 +87,13 @@ std::span<float> Closest::queries(std::uint32_t lanes) {
 }
 
 void Closest::search() {
+  Job job(device_);
+  record(job);
+  job.run();
+  finish();
+}
+
+void Closest::record(Job& job) {
   const auto capacity = std::uint32_t(candidates_a_lane * batch_->capacity);
   const shaders::ClosestPush push = {margin_, unreachable, lanes_, steps_, capacity};
   const BufferRange ranges[CLOSEST_BINDINGS] = {{nodes_.get()},
@@ -97,9 +104,18 @@ void Closest::search() {
   batch_->queries.send();
   batch_->candidates.host<std::uint32_t>()[0] = 0;
   batch_->candidates.send();
-  Job job(device_);
   job.dispatch(*kernel_, ranges, std::as_bytes(std::span(&push, 1)), (lanes_ + width - 1) / width);
-  job.run();
+}
+
+const Buffer& Closest::lanes_buffer() const {
+  return batch_->found.buffer();
+}
+
+const Buffer& Closest::candidates_buffer() const {
+  return batch_->candidates.buffer();
+}
+
+void Closest::finish() {
   batch_->found.receive();
   batch_->candidates.receive();
   const auto found = lanes();

@@ -11,6 +11,7 @@
 namespace cowgpu::engine {
 
 class Buffer;
+class Job;
 class Kernel;
 
 /// A binary tree of boxes over triangles, as shaders/closest.h lays it out.
@@ -59,6 +60,13 @@ public:
   /// Searches for the queries last put there. Throws Error(cut_short) where the device ended a loop early, Error(vulkan),
   /// Error(device_lost).
   void search();
+
+  /// The same in two steps, for jobs that go on with what was found: records the search, and after the job has run takes
+  /// it over; between the two a kernel may bind what lanes() and candidates() show.
+  void record(Job& job);
+  void finish();
+  const Buffer& lanes_buffer() const;
+  const Buffer& candidates_buffer() const;
 
   /// Of the last search.
   std::span<const ClosestLane> lanes();

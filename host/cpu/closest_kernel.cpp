@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace cowgpu::cpu::HWY_NAMESPACE {
@@ -26,13 +27,31 @@ using OneDouble = Wide<double, 1>;
 constexpr float unbounded = 1e30F; // less than the square of where unused slots are
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+// a b + c. Fused in single precision alone: doubles decide, and a device's (shaders/flow.comp) are to decide alike.
+template <class W>
+HWY_INLINE W product_plus(const W& a, const W& b, const W& c) {
+  if constexpr (std::is_same_v<W, Floats>)
+    return mul_add(a, b, c);
+  else
+    return a * b + c;
+}
+
+// c - a b, the same.
+template <class W>
+HWY_INLINE W minus_product(const W& a, const W& b, const W& c) {
+  if constexpr (std::is_same_v<W, Floats>)
+    return neg_mul_add(a, b, c);
+  else
+    return c - a * b;
+}
+
 // Squared distance from an edge that runs from the origin to (ex, ey), `inverse` its inverse squared length.
 template <class W>
 HWY_INLINE W edge_distance2(const W& x, const W& y, const W& ex, const W& ey, const W& inverse) {
   const W zero = wide_set<W>(0), one = wide_set<W>(1);
-  const W s = least(most(mul_add(x, ex, y * ey) * inverse, zero), one);
-  const W dx = neg_mul_add(s, ex, x), dy = neg_mul_add(s, ey, y);
-  return mul_add(dx, dx, dy * dy);
+  const W s = least(most(product_plus(x, ex, y * ey) * inverse, zero), one);
+  const W dx = minus_product(s, ex, x), dy = minus_product(s, ey, y);
+  return product_plus(dx, dx, dy * dy);
 }
 
 // `t` has the members of TriangleFrame from `length` on.
@@ -40,11 +59,11 @@ template <class W, class Frame>
 HWY_INLINE W in_plane(const Frame& t, const W& x, const W& y, const W& z) {
   const W zero = wide_set<W>(0);
   const W dx = x - least(most(x, zero), t.length), xb = x - t.length;
-  W d2 = mul_add(dx, dx, y * y);
+  W d2 = product_plus(dx, dx, y * y);
   d2 = least(d2, edge_distance2(x, y, t.cx, t.cy, t.c_inverse));
   d2 = least(d2, edge_distance2(xb, y, t.ex, t.ey, t.e_inverse));
   const auto inside = (zero < y) & (t.cx * y < t.cy * x) & (t.ey * xb < t.ex * y);
-  return mul_add(z, z, zero_where(inside, d2));
+  return product_plus(z, z, zero_where(inside, d2));
 }
 
 template <class W>
@@ -85,7 +104,7 @@ HWY_INLINE W double_distance2(const plan::TriangleFrame<double>& triangle, const
   const double* numbers = triangle.a;
   const auto t = frame_from<W>([&](std::size_t k) HWY_ATTR { return wide_set<W>(numbers[k]); });
   const W rx = p[0] - t.a[0], ry = p[1] - t.a[1], rz = p[2] - t.a[2];
-  const auto along = [&](const W* w) HWY_ATTR { return mul_add(w[0], rx, mul_add(w[1], ry, w[2] * rz)); };
+  const auto along = [&](const W* w) HWY_ATTR { return product_plus(w[0], rx, product_plus(w[1], ry, w[2] * rz)); };
   return in_plane(t, along(t.u), along(t.v), along(t.n));
 }
 

@@ -141,21 +141,46 @@ void FlowRun::answer(std::uint32_t face) {
     return call.set(start_, call.backward(start_, face));
   }
   path_.answer(face);
-  if (!path_.done()) return;
-  if ((path_.end().flags & flow_unfinished) && !again_) {
+  if (path_.done()) arrive(path_.end());
+}
+
+double FlowRun::tighter(double tolerance) {
+  return std::max(tolerance / 100, 1e-13);
+}
+
+void FlowRun::pass(const Vec3& place, double time) {
+  if (FlowTrace* const kept = call_->trace(start_)) {
+    kept->places.push_back(place);
+    kept->times.push_back(time);
+    ++passed_;
+  }
+}
+
+void FlowRun::go_back() {
+  if (FlowTrace* const kept = call_->trace(start_)) {
+    kept->places.resize(kept->places.size() - passed_);
+    kept->times.resize(kept->places.size());
+  }
+  passed_ = 0;
+}
+
+void FlowRun::arrive(const FlowEnd& found) {
+  FlowCall& call = *call_;
+  FlowEnd end = found;
+  if ((end.flags & flow_unfinished) && !again_) {
     again_ = true;
-    first_ = path_.end();
-    path_ =
-        FlowPath(call.surface_, call.options_.time, std::max(call.options_.tolerance / 100, 1e-13), call.trace(start_));
+    passed_ = 0;
+    first_ = end;
+    path_ = FlowPath(call.surface_, call.options_.time, tighter(call.options_.tolerance), call.trace(start_));
     return path_.start(call.starts_[start_], call.normals_.empty() ? Vec3(Vec3::Zero()) : call.normals_[start_]);
   }
-  FlowEnd end = path_.end();
   if (again_) {
     end.flags |= flow_restarted;
     end.queries += first_.queries;
     end.events += first_.events;
     end.steps += first_.steps;
   }
+  path_.stop();
   call.set(start_, end);
 }
 

@@ -57,10 +57,22 @@ public:
   /// Goes on to the next query or to the end, which it puts down in the call. Several threads may each have a run.
   void answer(std::uint32_t face);
 
+  /// For whoever goes on elsewhere after the first answer: where from, at which tolerance; the corners it passes; its end,
+  /// after which it is done or starts again. Until then it can go back to where it left, corners forgotten.
+  const FlowPath& path() const { return path_; }
+  bool tighter() const { return again_; }
+  void pass(const Vec3& place, double time);
+  void arrive(const FlowEnd& found);
+  void go_back();
+
+  /// Of the second way.
+  static double tighter(double tolerance);
+
 private:
   FlowCall* call_;
   std::uint32_t start_;
   bool again_ = false;
+  std::size_t passed_ = 0; // corners
   FlowEnd first_;
   FlowPath path_;
 };

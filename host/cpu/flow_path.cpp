@@ -22,6 +22,19 @@ constexpr double near_share = 1e3; // a length of 1e-3 diagonals and more is not
 
 constexpr int most_rounds = 2000; // of steps as long as the distance
 
+// shaders/flow.comp does the same operations in the same order.
+double norm(const Vec3& a) {
+  return reference::norm<double>(a);
+}
+double square(const Vec3& a) {
+  return reference::dot<double>(a, a);
+}
+
+// What a step may be multiplied by: errors per step go with its fourth power.
+double longer(double allowed, double error) {
+  return 0.9 * std::sqrt(std::sqrt(allowed / error));
+}
+
 } // namespace
 
 void FlowPath::Contact::add(std::uint32_t face) {
@@ -52,8 +65,23 @@ double FlowPath::small(double length, double distance) const {
 
 FlowPath::FlowPath(const FlowSurface& surface, double time, double tolerance, FlowTrace* trace)
     : surface_(&surface), time_(time), tolerance_(tolerance), scale_(surface.diagonal()),
-      // A triangle that is nearer only during a step is not seen: closer looks at tighter tolerances.
-      longest_(std::clamp(0.5 * std::pow(tolerance / 1e-6, 1.0 / 6), 0.05, 0.5)), trace_(trace) {}
+      longest_(longest_step(tolerance)), most_steps_(most_steps(tolerance)), trace_(trace) {}
+
+// A triangle that is nearer only during a step is not seen: closer looks at tighter tolerances.
+double FlowPath::longest_step(double tolerance) {
+  return std::clamp(0.5 * std::pow(tolerance / 1e-6, 1.0 / 6), 0.05, 0.5);
+}
+
+double FlowPath::most_steps(double tolerance) {
+  return most_rounds / longest_step(tolerance);
+}
+
+FlowDeparture FlowPath::departure() const {
+  using Asks = FlowDeparture::Asks;
+  const Asks asks = phase_ == Phase::lift ? Asks::lift : phase_ == Phase::ray ? Asks::ray : Asks::last;
+  return {asks,           x_,           t_,         ball_.foot, ball_.normal,
+          ball_.distance, ball_.radius, ball_.face, inside_,    std::uint32_t(rounds_)};
+}
 
 void FlowPath::record() {
   if (!trace_) return;
@@ -61,8 +89,8 @@ void FlowPath::record() {
   trace_->times.push_back(t_);
 }
 
-FlowPath::View FlowPath::look(const Vec3& x) const {
-  View view;
+void FlowPath::look(const Vec3& x, View& view) const {
+  view.place = x;
   view.count = contacts_.count;
   view.distance = std::numeric_limits<double>::infinity();
   for (int c = 0; c < contacts_.count; ++c) {
@@ -91,7 +119,6 @@ FlowPath::View FlowPath::look(const Vec3& x) const {
                                           view.velocity,
                                           std::span<double>(view.weights.data(), std::size_t(view.count)));
   }
-  return view;
 }
 
 void FlowPath::tidy(View& view) {
@@ -107,7 +134,7 @@ void FlowPath::tidy(View& view) {
       continue;
     }
     int same = 0;
-    while (same < kept.count && (view.points[std::size_t(from[std::size_t(same)])] - view.points[i]).norm() >= join)
+    while (same < kept.count && norm(view.points[std::size_t(from[std::size_t(same)])] - view.points[i]) >= join)
       ++same;
     const Contact& contact = contacts_.list[i];
     if (same < kept.count) {
@@ -129,7 +156,7 @@ void FlowPath::tidy(View& view) {
   }
   if (kept.count == 0) return;
   contacts_ = kept;
-  if (changed) view = look(x_);
+  if (changed) look(x_, view);
 }
 
 void FlowPath::restart(std::uint32_t face) {
@@ -142,11 +169,12 @@ void FlowPath::restart(std::uint32_t face) {
 }
 
 void FlowPath::take_in(std::uint32_t face, const Vec3& place) {
-  const View view = look(place);
+  View view;
+  look(place, view);
   const Vec3 point = surface_->foot(face, place).point;
   ++end_.events;
   for (int c = 0; c < view.count; ++c)
-    if ((view.points[std::size_t(c)] - point).norm() < same_point * view.distance) {
+    if (norm(view.points[std::size_t(c)] - point) < same_point * view.distance) {
       contacts_.list[std::size_t(c)].add(face);
       return;
     }
@@ -182,7 +210,7 @@ void FlowPath::end_ray() {
   const bool moved = ball_.radius > ball_.distance + rounding * scale_;
   ++end_.events;
   contacts_.count = 0;
-  if (moved && (ball_.touched - ball_.foot).norm() < same_point * ball_.radius) {
+  if (moved && norm(ball_.touched - ball_.foot) < same_point * ball_.radius) {
     contacts_.add(ball_.hit);
   } else {
     contacts_.add(ball_.face);
@@ -194,22 +222,28 @@ void FlowPath::end_ray() {
   go_on();
 }
 
-Vec3 FlowPath::slide_step(const Vec3& from, const Vec3& velocity, double step, double* error) const {
+// With an error wanted `view` is that from the step's end.
+Vec3 FlowPath::slide_step(const Vec3& from, const Vec3& velocity, double step, View& view, double* error) const {
   return reference::dormand_prince<double>(
-      from, step, velocity, [&](const Vec3& y) { return look(y).velocity; }, error);
+      from, step, velocity,
+      [&](const Vec3& y) {
+        look(y, view);
+        return view.velocity;
+      },
+      error);
 }
 
-void FlowPath::balance(Vec3& x) const {
+void FlowPath::balance(Vec3& x, View& view) const {
   // Newton's method for equal distances of up to three contacts, along the differences of their directions.
   for (int round = 0; round < 3; ++round) {
-    const View view = look(x);
+    if (x != view.place) look(x, view);
     int id[3], m = 0;
     for (int i = 0; i < view.count && m < 3; ++i)
       if (view.active(i)) id[m++] = i;
     if (m < 2) return;
     const auto at = [&](int k) { return std::size_t(id[k]); };
     const Vec3 a = view.normals[at(1)] - view.normals[at(0)];
-    const double ra = view.distances[at(0)] - view.distances[at(1)], aa = a.squaredNorm();
+    const double ra = view.distances[at(0)] - view.distances[at(1)], aa = square(a);
     if (!(aa > 1e-16)) return;
     double rc = 0;
     if (m == 2) {
@@ -217,7 +251,7 @@ void FlowPath::balance(Vec3& x) const {
     } else {
       const Vec3 c = view.normals[at(2)] - view.normals[at(0)];
       rc = view.distances[at(0)] - view.distances[at(2)];
-      const double cc = c.squaredNorm(), ac = a.dot(c), determinant = aa * cc - ac * ac;
+      const double cc = square(c), ac = reference::dot<double>(a, c), determinant = aa * cc - ac * ac;
       if (!(determinant > 1e-14 * aa * cc)) return;
       x += (ra * cc - rc * ac) / determinant * a + (rc * aa - ra * ac) / determinant * c;
     }
@@ -238,14 +272,19 @@ bool FlowPath::straight(const View& from, const Vec3& to) const {
 
 Vec3 FlowPath::advance(const View& from, double step, bool straight) const {
   if (straight) return x_ + step * from.velocity;
-  Vec3 place = slide_step(x_, from.velocity, step, nullptr);
-  balance(place);
+  View view;
+  Vec3 place = slide_step(x_, from.velocity, step, view, nullptr);
+  balance(place, view);
   return place;
 }
 
-// The step after which `face` is as near as the contacts, by Illinois' rule; `place` then.
+// The step after which `face` is as near as the contacts, by Illinois' rule; `place`, that after `step`, then.
 double FlowPath::to_tie(const View& from, std::uint32_t face, double step, double gap, bool straight, Vec3& place) {
-  const auto gap_at = [&](const Vec3& at) { return surface_->foot(face, at).distance - look(at).active_distance(); };
+  View view;
+  const auto gap_at = [&](const Vec3& at) {
+    look(at, view);
+    return surface_->foot(face, at).distance - view.active_distance();
+  };
   double low = 0, high = step, low_gap = gap_at(x_), high_gap = gap;
   if (low_gap <= 10 * small(rounding, from.distance)) {
     place = x_;
@@ -257,28 +296,27 @@ double FlowPath::to_tie(const View& from, std::uint32_t face, double step, doubl
     if (!(s > low && s < high)) s = (low + high) / 2;
     const Vec3 at = advance(from, s, straight);
     const double here = gap_at(at);
+    const bool enough = std::abs(here) < small(rounding, from.distance) / 10;
     if (here > 0) {
       low = s;
       low_gap = here;
       if (side == 1) high_gap /= 2;
       side = 1;
     } else {
-      high = s;
       high_gap = here;
       if (side == -1) low_gap /= 2;
       side = -1;
     }
-    if (std::abs(here) < small(rounding, from.distance) / 10) {
-      high = s;
-      break;
-    }
+    if (here > 0 && !enough) continue;
+    high = s;
+    place = at;
+    if (enough) break;
   }
-  place = advance(from, high, straight);
   return high;
 }
 
 void FlowPath::begin_slide(const View& view) {
-  const double most = std::min(time_ - t_, longest_ * view.distance / view.velocity.norm());
+  const double most = std::min(time_ - t_, longest_ * view.distance / norm(view.velocity));
   double step = most, next = 0;
   ++end_.steps;
   Vec3 place = x_ + step * view.velocity;
@@ -286,14 +324,15 @@ void FlowPath::begin_slide(const View& view) {
   if (!line) {
     step = std::min(most, step_ > 0 ? step_ : most / 10);
     double error = 0, allowed = 0;
+    View there;
     for (int tries = 0;; ++tries) {
-      place = slide_step(x_, view.velocity, step, &error);
+      place = slide_step(x_, view.velocity, step, there, &error);
       allowed = tolerance_ * step + small(rounding, view.distance);
       if (error <= allowed || step < apart * most || tries == 30) break;
-      step *= std::max(0.1, 0.9 * std::pow(allowed / error, 0.25));
+      step *= std::max(0.1, longer(allowed, error));
     }
-    next = step * std::min(4.0, 0.9 * std::pow(allowed / (error + 1e-30), 0.2));
-    balance(place);
+    next = step * std::min(4.0, longer(allowed, error + 1e-30));
+    balance(place, there);
   }
   slide_ = {view, place, step, next, line, no_face, 0};
   ask(Phase::slide, place, warm_);
@@ -301,15 +340,20 @@ void FlowPath::begin_slide(const View& view) {
 
 void FlowPath::check_slide(std::uint32_t face) {
   Vec3& place = slide_.place;
-  const double distance = look(place).distance, gap = surface_->foot(face, place).distance - distance;
-  if (gap >= -small(tie, distance)) return end_slide();
-  slide_.nearer = face;
-  slide_.step = to_tie(slide_.from, face, slide_.step, gap, slide_.straight, place);
-  if (slide_.step == 0 || ++slide_.tries == 12) return end_slide();
-  ask(Phase::slide, place, warm_);
+  View view;
+  look(place, view);
+  const double gap = surface_->foot(face, place).distance - view.distance;
+  const bool met = gap < -small(tie, view.distance);
+  if (met) {
+    slide_.nearer = face;
+    slide_.step = to_tie(slide_.from, face, slide_.step, gap, slide_.straight, place);
+    if (slide_.step > 0 && ++slide_.tries < 12) return ask(Phase::slide, place, warm_);
+  }
+  end_slide(slide_.nearer == no_face ? &view : nullptr);
 }
 
-void FlowPath::end_slide() {
+// `view`: from the step's end, if the contacts are the same there.
+void FlowPath::end_slide(View* view) {
   const double step = slide_.step, distance = slide_.from.distance;
   const bool met = slide_.nearer != no_face;
   if (met) take_in(slide_.nearer, slide_.place);
@@ -319,7 +363,7 @@ void FlowPath::end_slide() {
   idle_ = step < apart * distance ? idle_ + 1 : 0;
   step_ = met ? std::max(slide_.next / 4, same_point * distance) : slide_.next;
   warm_ = contacts_.list[0].faces[0];
-  go_on();
+  go_on(view);
 }
 
 bool FlowPath::come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32_t& face) const {
@@ -431,16 +475,19 @@ void FlowPath::answer(std::uint32_t face) {
   }
 }
 
-void FlowPath::go_on() {
-  if (t_ >= time_ * (1 - 1e-14)) return ask(Phase::last, x_, warm_);
-  if (rounds_++ >= most_rounds / longest_) {
+// `view`: from x_, where it is known.
+void FlowPath::go_on(View* known) {
+  if (t_ >= time_ * (1 - time_digits)) return ask(Phase::last, x_, warm_);
+  if (rounds_++ >= most_steps_) {
     end_.flags |= flow_unfinished;
     return ask(Phase::last, x_, warm_);
   }
   if (idle_ > 6) return ask(Phase::restart, x_, warm_);
-  View view = look(x_);
+  View fresh;
+  if (!known) look(x_, fresh);
+  View& view = known ? *known : fresh;
   tidy(view);
-  if (view.velocity.squaredNorm() < 1e-16) {
+  if (square(view.velocity) < 1e-16) {
     end_.flags |= flow_stationary;
     return ask(Phase::last, x_, warm_);
   }

@@ -33,6 +33,18 @@ struct FlowEnd {
   std::uint32_t queries = 0, events = 0, steps = 0;
 };
 
+/// A path between its first query's answer and the next one's: all there is to know of it.
+struct FlowDeparture {
+  enum class Asks { lift, ray, last } asks = Asks::last; ///< what the query is for
+  Vec3 place = Vec3::Zero();
+  double time = 0;
+  Vec3 foot = Vec3::Zero(), normal = Vec3::Zero(); ///< of the ball about the query, but for `last`
+  double distance = 0, radius = 0;                 ///< of the place from the foot; of the ball
+  std::uint32_t face = 0;                          ///< of the foot
+  bool inside = false;                             ///< it ended before it came out of the body
+  std::uint32_t rounds = 0;
+};
+
 /// Corners of a path and their times, if asked for.
 struct FlowTrace {
   std::vector<Vec3> places;
@@ -61,6 +73,16 @@ public:
 
   const FlowEnd& end() const { return end_; }
 
+  /// For whoever goes on with it elsewhere, after the first answer.
+  FlowDeparture departure() const;
+
+  /// Longest step of a slide, in distances from the surface, and the steps a path may take.
+  static double longest_step(double tolerance);
+  static double most_steps(double tolerance);
+
+  /// What a time that has come may lack.
+  static constexpr double time_digits = 1e-14;
+
 private:
   static constexpr int most_contacts = 8, most_faces = 6;
 
@@ -83,7 +105,7 @@ private:
     std::array<double, most_contacts> distances{}, weights{};
     std::array<std::uint32_t, most_contacts> faces{};
     std::array<bool, most_contacts> inside{};
-    Vec3 velocity;
+    Vec3 place, velocity;
     double distance = 0; ///< the least
     int count = 0;
     bool active(int i) const { return weights[std::size_t(i)] > 1e-9; }
@@ -111,10 +133,10 @@ private:
   };
 
   double small(double length, double distance) const;
-  View look(const Vec3& x) const;
+  void look(const Vec3& x, View& view) const;
   void tidy(View& view);
   void ask(Phase phase, const Vec3& place, std::uint32_t warm);
-  void go_on();
+  void go_on(View* known = nullptr);
   void leave();
   void lift(std::uint32_t face);
   void begin_ray(const Vec3& foot, const Vec3& normal, double distance, std::uint32_t face);
@@ -122,19 +144,19 @@ private:
   void end_ray();
   void begin_slide(const View& view);
   void check_slide(std::uint32_t face);
-  void end_slide();
+  void end_slide(View* view);
   void restart(std::uint32_t face);
   void take_in(std::uint32_t face, const Vec3& place);
   Vec3 advance(const View& from, double step, bool straight) const;
-  Vec3 slide_step(const Vec3& from, const Vec3& velocity, double step, double* error) const;
-  void balance(Vec3& x) const;
+  Vec3 slide_step(const Vec3& from, const Vec3& velocity, double step, View& view, double* error) const;
+  void balance(Vec3& x, View& view) const;
   bool straight(const View& from, const Vec3& to) const;
   double to_tie(const View& from, std::uint32_t face, double step, double gap, bool straight, Vec3& place);
   bool come_out(const Vec3& place, Vec3& foot, Vec3& normal, std::uint32_t& face) const;
   void record();
 
   const FlowSurface* surface_;
-  double time_, tolerance_, scale_, longest_;
+  double time_, tolerance_, scale_, longest_, most_steps_;
   FlowTrace* trace_;
   FlowEnd end_;
   Contacts contacts_;

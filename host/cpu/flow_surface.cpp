@@ -3,6 +3,7 @@
 #include "host/cpu/closest.hpp"
 #include "host/cpu/closest_kernel.hpp"
 #include "host/error.hpp"
+#include "host/reference/flow.hpp"
 
 #include <Eigen/Geometry>
 
@@ -29,7 +30,7 @@ Foot FlowSurface::foot(std::uint32_t face, const Vec3& p) const {
   const plan::TriangleFrame<double>& t = frames_[face];
   const Eigen::Map<const Vec3> a(t.a), u(t.u), v(t.v);
   const Vec3 r = p - a;
-  const double x = u.dot(r), y = v.dot(r);
+  const double x = reference::dot<double>(u, r), y = reference::dot<double>(v, r);
   Foot foot;
   double qx = x, qy = y;
   foot.inside = y > 0 && t.cx * y - t.cy * x < 0 && t.ex * y - t.ey * (x - t.length) > 0;
@@ -45,7 +46,7 @@ Foot FlowSurface::foot(std::uint32_t face, const Vec3& p) const {
     if (square(xb - se * t.ex) + square(y - se * t.ey) < least) qx = t.length + se * t.ex, qy = se * t.ey;
   }
   foot.point = a + qx * u + qy * v;
-  foot.distance = (p - foot.point).norm();
+  foot.distance = reference::norm<double>(p - foot.point);
   return foot;
 }
 

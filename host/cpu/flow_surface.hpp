@@ -28,6 +28,8 @@ public:
   double diagonal() const { return diagonal_; }                           ///< of the bounding box
   const Vec3& normal(std::uint32_t face) const { return normals_[face]; } ///< outwards; zero for a face without area
 
+  const plan::TriangleFrame<double>& frame(std::uint32_t face) const { return frames_[face]; }
+
   /// As plan::ClosestTree::on_face, less what a flow does not need.
   Foot foot(std::uint32_t face, const Vec3& x) const;
 

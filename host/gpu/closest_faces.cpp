@@ -25,20 +25,24 @@ ClosestFaces::ClosestFaces(std::shared_ptr<engine::Gpu> gpu, std::uint32_t itera
   slots_ = std::move(texels.slots);
 }
 
+void ClosestFaces::put(std::span<const Vec3> queries, std::span<const std::uint32_t> ids) {
+  const std::size_t lanes = (ids.size() + lane_queries - 1) / lane_queries;
+  const std::span<float> to = engine_->queries(std::uint32_t(std::max<std::size_t>(1, lanes)));
+  constexpr std::size_t chunk = 1024;
+  parallel_for(0, (lanes + chunk - 1) / chunk, [&](std::size_t task, unsigned) {
+    for (std::size_t lane = task * chunk; lane < std::min(lanes, (task + 1) * chunk); ++lane)
+      for (std::size_t k = 0; k < lane_queries; ++k) {
+        const Vec3& q = queries[ids[std::min(lane * lane_queries + k, ids.size() - 1)]];
+        // Far ones are the host's.
+        const auto p = tree_.is_far(q) ? std::array<float, 3>{2, 2, 2} : tree_.local(q);
+        for (std::size_t c = 0; c < 3; ++c) to[3 * lane_queries * lane + lane_queries * c + k] = p[c];
+      }
+  });
+}
+
 void ClosestFaces::search(std::span<const Vec3> queries, std::span<const std::uint32_t> ids) {
   translated([&] {
-    const std::size_t lanes = (ids.size() + lane_queries - 1) / lane_queries;
-    const std::span<float> to = engine_->queries(std::uint32_t(lanes));
-    constexpr std::size_t chunk = 1024;
-    parallel_for(0, (lanes + chunk - 1) / chunk, [&](std::size_t task, unsigned) {
-      for (std::size_t lane = task * chunk; lane < std::min(lanes, (task + 1) * chunk); ++lane)
-        for (std::size_t k = 0; k < lane_queries; ++k) {
-          const Vec3& q = queries[ids[std::min(lane * lane_queries + k, ids.size() - 1)]];
-          // Far ones are the host's.
-          const auto p = tree_.is_far(q) ? std::array<float, 3>{2, 2, 2} : tree_.local(q);
-          for (std::size_t c = 0; c < 3; ++c) to[3 * lane_queries * lane + lane_queries * c + k] = p[c];
-        }
-    });
+    put(queries, ids);
     engine_->search();
   });
 }

@@ -1,7 +1,7 @@
 // Closest faces on a device, for the verbs `closest` and `flow`. The device lists the faces that may be the closest in single
-// precision; among them the host decides with the code of the CPU path, so that both give the same bits. A query has about
-// one candidate: deciding costs 7 % of the search on lavapipe and leaves fp64 out of the shader. Searches the device gives
-// up (too many steps or candidates), and queries too far away for single precision, are the host's as well.
+// precision. Among them the host decides for `closest`, with the code of the CPU path: a query has about one candidate, and
+// deciding costs 7 % of the search on lavapipe. For `flow` its shader decides, in the same way; both give the same bits.
+// Searches the device gives up (too many steps or candidates), and queries too far away for single precision, are the host's.
 #pragma once
 
 #include "engine/kernels/closest.hpp"
@@ -26,6 +26,13 @@ public:
 
   /// Searches for the queries named by `ids`, 1 to batch of them, neighbours in space next to each other. Throws Error.
   void search(std::span<const Vec3> queries, std::span<const std::uint32_t> ids);
+
+  /// The same without the search, for kernels that go on with it (engine::Flow); `ids` may be empty. Queries so far away that
+  /// single precision has nothing to decide are not to be among them.
+  void put(std::span<const Vec3> queries, std::span<const std::uint32_t> ids);
+  engine::Closest& kernel() { return *engine_; }
+  /// In the tree, of the device's triangles.
+  std::span<const std::uint32_t> slots() const { return slots_; }
 
   /// The closest faces of queries of the last search from `first`, a multiple of lane_queries, on; as
   /// cpu::closest_single has them. Safe from several threads. Throws Error(device_failed) where the device missed one.

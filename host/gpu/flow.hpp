@@ -1,8 +1,9 @@
 // The Vulkan path of the verb `flow`, in wavefronts. Up to most_live points are on their way at once. Each pass the device
-// searches for the nearest faces of all of them (host/gpu/closest_faces.hpp); the host takes each point on to its next query
-// with the code of the CPU path (host/cpu/flow_path.hpp), fills the places of those that ended with new starts and launches
-// the next. The answers are the CPU path's, so both paths give the same bits. What the device does, what it does not and
-// what that costs stands in bench/flow.md.
+// searches for the nearest faces of all of them (shaders/closest.comp) and advances each by one event to its next query
+// (shaders/flow.comp), with the operations of the CPU path in the same order: both paths give the same bits. The host sorts
+// the queries along a Morton curve, fills the places of those that ended with new starts and launches the next. Its share of
+// a point's way is the beginning, which takes winding numbers, and queries the search gives up. What that costs stands in
+// bench/flow.md.
 #pragma once
 
 #include "engine/gpu.hpp"
