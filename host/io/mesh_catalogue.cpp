@@ -87,7 +87,8 @@ std::string read_catalogued(const CatalogueEntry& entry) {
   throw Error(
       Fault::mesh_missing,
       fmt::format("the mesh {} ({}) is not on this machine: {} with sha256 {} was looked for in {}{}. It is {}. "
-                  "`cowgpu meshes add FILE` checks it and puts it where it is found. The built-in cow needs no "
+                  "`cowgpu meshes add FILE` checks a file and puts it where it is found; COWGPU_MESHES names a folder "
+                  "of your own. The built-in cow needs no "
                   "file: builtin:cow",
                   entry.name, entry.what, entry.file, entry.sha256, looked, other, entry.source));
 }
