@@ -56,6 +56,8 @@ void add_roundtrip(CLI::App& transform, Common& common);
 
 /// Adds --device, --threads, --progress and --quiet.
 void add_common_options(CLI::App& command, Common& common);
+/// The same without --device.
+void add_run_options(CLI::App& command, Common& common);
 
 /// Opens what --device names: "cpu", or a Vulkan device. "auto" falls back to the CPU path where there is no loader, no
 /// device or no double precision; `note` then says so. Throws Error(no_loader, no_device, no_fp64, device_failed).

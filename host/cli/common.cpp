@@ -43,6 +43,10 @@ void add_common_options(CLI::App& command, Common& common) {
                   "Where to compute: auto (the best Vulkan device, else the CPU), cpu, a number or a part of a name "
                   "from `cowgpu devices`")
       ->capture_default_str();
+  add_run_options(command, common);
+}
+
+void add_run_options(CLI::App& command, Common& common) {
   command.add_option("--threads", common.threads, "Threads of the CPU path (0: all)")
       ->check(CLI::Range(0U, 4096U))
       ->capture_default_str();
