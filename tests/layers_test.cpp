@@ -21,7 +21,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/cpu", {"host", "host/plan", "host/reference"}},
     {"host/gpu", {"host", "host/plan", "host/cpu", "engine", "engine/kernels"}},
     {"host/mesh", {"host", "host/plan"}},
-    {"host/io", {"host", "host/map", "host/mesh", "host/spectrum", "host/flow"}},
+    {"host/io", {"host", "host/map", "host/mesh", "host/spectrum", "host/flow", "generated"}},
     {"host/map", {"host", "host/mesh"}},
     {"host/spectrum", {"host", "host/mesh", "host/map", "host/plan", "host/reference"}},
     {"host/flow", {"host", "host/mesh", "host/map", "host/spectrum"}},

@@ -2,8 +2,8 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -11,12 +11,13 @@ namespace cowgpu::test {
 
 std::size_t cgal_self_intersections(std::span<const Vec3> vertices, std::span<const Face> faces) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  std::vector<Kernel::Point_3> points;
-  for (const Vec3& p : vertices) points.emplace_back(p.x(), p.y(), p.z());
-  std::vector<std::array<std::size_t, 3>> triangles;
-  for (const Face& f : faces) triangles.push_back({f[0], f[1], f[2]});
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  CGAL::Polygon_mesh_processing::triangle_soup_self_intersections(points, triangles, std::back_inserter(pairs));
+  using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+  Mesh mesh;
+  std::vector<Mesh::Vertex_index> index;
+  for (const Vec3& v : vertices) index.push_back(mesh.add_vertex({v.x(), v.y(), v.z()}));
+  for (const Face& f : faces) mesh.add_face(index[f[0]], index[f[1]], index[f[2]]);
+  std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
+  CGAL::Polygon_mesh_processing::self_intersections(mesh, std::back_inserter(pairs));
   return pairs.size();
 }
 

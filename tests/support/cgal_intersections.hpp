@@ -10,7 +10,8 @@
 namespace cowgpu::test {
 
 /// Pairs of triangles with more in common than the vertices and edges they share by number: crossing, overlapping or
-/// touching. Faces must have area.
+/// touching. Faces must have area, edges two
+/// faces that run them in opposite directions.
 std::size_t cgal_self_intersections(std::span<const Vec3> vertices, std::span<const Face> faces);
 
 } // namespace cowgpu::test
