@@ -102,12 +102,23 @@ TEST_CASE("walls that lie on each other are counted once", "[overlap]") {
 }
 
 TEST_CASE("walls a rounding apart give a volume within its uncertainty", "[overlap]") {
-  for (const double angle : {0.3, 1.1, 2.5}) {
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vec3(3, 1, 2).normalized()).toRotationMatrix();
-    const Overlap found = overlap_of(rotated(together(box({2, 2, 2}), box({1, 1, 1})), turn));
-    INFO(found.overlapped.volume << " +- " << found.overlapped.uncertainty);
-    CHECK(std::abs(found.overlapped.volume - 1) <= found.overlapped.uncertainty);
-  }
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const RawMesh body = box({2, 2, 2});
+  const std::pair<RawMesh, double> bodies[] = {{together(body, box({1, 1, 1})), 1},
+                                               {together(body, box({3, 1, 1}, {-0.5, 0, 0})), 2},
+                                               {together(body, body), 8}};
+  for (int i = 0; i < 16; ++i)
+    for (const auto& [mesh, truth] : bodies) {
+      const Vec3 axis = Vec3(uniform(random), uniform(random), uniform(random)).normalized();
+      RawMesh turned = rotated(mesh, Eigen::AngleAxisd(3 * uniform(random), axis).toRotationMatrix());
+      if (i % 2) // coordinates change by a rounding, shell by shell
+        for (Vec3& p : turned.vertices) p += 1e-16 * Vec3::NullaryExpr([&](int) { return uniform(random); });
+      const RegionVolume found = overlap_of(turned, 1).overlapped;
+      INFO(found.volume << " +- " << found.uncertainty << ", " << truth);
+      CHECK(std::abs(found.volume - truth) <= found.uncertainty);
+      CHECK(found.uncertainty <= 0.05 * truth);
+    }
 }
 
 TEST_CASE("the overlapped volume does not depend on threads, order or place", "[overlap]") {
