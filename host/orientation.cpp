@@ -82,6 +82,15 @@ void add_determinant(const Vec3& a, const Vec3& b, const Vec3& c, int sign, Prod
   }
 }
 
+// The sign of the doubled area of the triangle (a, b, p) seen from above, p moved by an infinitesimal along x and by its
+// square along y: 0 only where a and b lie above each other.
+int perturbed_side(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const int side = orientation_along(2, a, b, p);
+  if (side != 0) return side;
+  if (a.y() != b.y()) return a.y() > b.y() ? 1 : -1;
+  return (b.x() > a.x()) - (b.x() < a.x());
+}
+
 } // namespace
 
 int orientation_exact(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -132,6 +141,18 @@ int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   if (determinant > bound) return 1;
   if (-determinant > bound) return -1;
   return side_of_plane_exact(a, b, c, p);
+}
+
+int orientation_along(int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  return orientation(Vec3(a[i], a[j], 1), Vec3(b[i], b[j], 1), Vec3(c[i], c[j], 1));
+}
+
+int vertical_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, bool up) {
+  const int side = perturbed_side(a, b, p);
+  if (side == 0 || perturbed_side(b, c, p) != side || perturbed_side(c, a, p) != side) return 0;
+  // The face looks up if side is 1; it is above p if p is on the other side of it.
+  return side_of_plane(a, b, c, p) == (up ? side : -side) ? (up ? side : -side) : 0;
 }
 
 } // namespace cowgpu

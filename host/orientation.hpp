@@ -24,4 +24,14 @@ int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
 /// The same without the error bound.
 int side_of_plane_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
 
+/// The sign of the doubled area of the triangle a, b, c seen along the axis from its positive end (0 x, 1 y, 2 z), exact: 1 if
+/// it runs counter-clockwise, 0 if it is a line or a point there.
+int orientation_along(int axis, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// What a face adds to the winding number about p along the vertical ray from p, upwards or downwards: 1, 0 or -1, exact. p
+/// counts as moved by an infinitesimal along x and by its square along y, so that no ray meets an edge, and a p in the
+/// face's plane as behind the ray's start: the face is not met. The sum over a closed surface's faces is the winding
+/// number.
+int vertical_crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, bool up);
+
 } // namespace cowgpu

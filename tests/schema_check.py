@@ -247,4 +247,22 @@ with tempfile.TemporaryDirectory() as folder:
     found["fields"][0]["degrees"][0]["norm"] = -1
     refuses(difference, found, "a negative norm")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
-print("40 documents and 8 files passed")
+inspect = load_schema("inspect")
+with tempfile.TemporaryDirectory() as folder:
+    path, mended = os.path.join(folder, "open.off"), os.path.join(folder, "mended.ply")
+    with open(path, "w", encoding="utf-8") as file:  # a tetrahedron with one vertex doubled and one face turned
+        file.write("OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 4\n3 0 2 4\n")
+    as_found = output_of("inspect", path, "--json")
+    repaired = output_of("inspect", path, "--weld", "0", "--orient", "--largest-shell", "-o", mended, "--json")
+    again = output_of("inspect", mended, "--json")
+    whole = output_of("inspect", "builtin:cow@1", "--json")
+    for report in (as_found, repaired, again, whole):
+        jsonschema.validate(report, inspect)
+    assert as_found["moments"].startswith("no [mesh-open]") and "volume" not in as_found
+    assert repaired["moments"] == again["maps"] == "yes" and len(repaired["notes"]) == 3
+    assert repaired["volume"] == again["volume"] and repaired["output"] == mended
+    assert whole["overlapped"]["volume"] == 0 and whole["inscribed_radius"] <= whole["largest_ball"]["bound"]
+    assert whole["inscribed_radius"] < whole["brillouin_radius"]
+    whole["self_intersections"]["listed"] = [{"faces": [1], "kind": "crossing", "place": [0, 0, 0]}]
+    refuses(inspect, whole, "a pair of one face")
+print("44 documents and 8 files passed")

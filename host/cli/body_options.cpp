@@ -1,8 +1,8 @@
 #include "host/cli/body_options.hpp"
 
 #include "host/cli/commands.hpp"
+#include "host/cli/mend_options.hpp"
 #include "host/error.hpp"
-#include "host/io/mesh_source.hpp"
 #include "host/spectrum/rotation.hpp"
 #include "host/units.hpp"
 
@@ -58,8 +58,8 @@ double parse_density(std::string_view option, std::string_view text, bool metric
   return density.value;
 }
 
-ClosedSurface load_placed(const std::string& name, const Placement& placement) {
-  RawMesh mesh = load_mesh(name);
+ClosedSurface load_placed(const std::string& name, const Mending& mending, const Placement& placement) {
+  RawMesh mesh = load_mended(name, mending);
   place(mesh, placement);
   return ClosedSurface::from(std::move(mesh));
 }
@@ -82,7 +82,7 @@ Part load_part(const std::string& text, const Placement& placement) {
   const PartChoice choice = parse_part(text);
   const double density = parse_density("--part " + choice.mesh, choice.density, placement.metric);
   try {
-    return Part(load_placed(choice.mesh, placement), density);
+    return Part(load_placed(choice.mesh, {}, placement), density);
   } catch (const Error& error) {
     throw Error(error.fault(), fmt::format("--part {}: {}", text, error.what()));
   }
@@ -119,13 +119,14 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
                   "Units, axes and attitude are those of MESH")
       ->type_name("FILE=DENSITY")
       ->allow_extra_args(false);
+  add_mend_options(command, options.mending);
 }
 
 Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
   const OriginChoice origin = parse_origin(options.origin);
   const Placement placement = parse_placement(options);
   const double density = parse_density("--density", options.density, placement.metric);
-  ClosedSurface surface = load_placed(options.mesh, placement);
+  ClosedSurface surface = load_placed(options.mesh, options.mending, placement);
   notes.insert(notes.end(), surface.mesh().notes.begin(), surface.mesh().notes.end());
   std::vector<Part> parts;
   for (const std::string& text : options.parts) parts.push_back(load_part(text, placement));

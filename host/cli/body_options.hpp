@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/mesh/body.hpp"
+#include "host/mesh/mend.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -17,13 +18,14 @@ struct BodyOptions {
   std::string density = "1";
   std::string length_unit, axes, rotate;
   std::vector<std::string> parts; ///< FILE=DENSITY each
+  Mending mending;                ///< of MESH, before it is placed
 };
 
-/// Adds MESH, --origin, --density, --length-unit, --axes, --rotate and --part.
+/// Adds MESH, --origin, --density, --length-unit, --axes, --rotate, --part and those of mend_options.hpp.
 void add_body_options(CLI::App& command, BodyOptions& options);
 
 /// Reads mesh and parts, places them and measures the body; sentences about what was done go to `notes`. Throws
-/// Error(bad_argument) for options that mean nothing or do not go together, and what load_mesh(), ClosedSurface::from() and
+/// Error(bad_argument) for options that mean nothing or do not go together, and what load_mended(), ClosedSurface::from() and
 /// make_body() throw; errors of a part begin with its name.
 Body load_body(const BodyOptions& options, std::vector<std::string>& notes);
 

@@ -50,6 +50,7 @@ void add_meshes(CLI::App& app);
 
 /// Adds `man` and `completion`, which print the man page and the shell completion of `app`.
 void add_manual(CLI::App& app);
+
 /// Checks of options: a finite number above 0, or one from 0 on.
 CLI::Validator positive_number();
 CLI::Validator non_negative_number();

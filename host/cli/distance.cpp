@@ -1,9 +1,9 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/mend_options.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/distance_file.hpp"
-#include "host/io/mesh_source.hpp"
 #include "host/io/point_file.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
@@ -24,6 +24,7 @@ constexpr double enlargement = 1.1; // of the box that --grid fills
 
 struct Options {
   std::string mesh = "builtin:cow", points, output;
+  Mending mending;
   std::size_t grid = 0;
   bool without_sign = false, json = false, dry_run = false;
 };
@@ -141,7 +142,7 @@ void run(const Options& options, const Common& common) {
 
   auto start = Clock::now();
   Run run;
-  run.mesh = load_mesh(options.mesh);
+  run.mesh = load_mended(options.mesh, options.mending);
   if (options.without_sign)
     check_distance_surface(run.mesh.vertices, run.mesh.faces);
   else
@@ -214,6 +215,7 @@ void add_distance(CLI::App& app, Common& common) {
   CLI::App* command =
       app.add_subcommand("distance", "Signed distances of points from a surface, and the closest points of it");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->required();
+  add_mend_options(*command, options->mending);
   command
       ->add_option("points", options->points,
                    "Text file of points, one a line: x,y,z (or columns named so); - for standard input")

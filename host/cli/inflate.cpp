@@ -1,12 +1,12 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/expand_flow.hpp"
+#include "host/cli/mend_options.hpp"
 #include "host/cli/scene.hpp"
 #include "host/cli/surface_outputs.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/flow/level_surface.hpp"
-#include "host/io/mesh_source.hpp"
 #include "host/io/png.hpp"
 #include "host/io/shown.hpp"
 #include "host/mesh/audit.hpp"
@@ -28,6 +28,7 @@ constexpr const char* star_word = "star";
 
 struct Options {
   std::string mesh = "builtin:cow", levels, origin = "com", output, format, picture, view = "28,14";
+  Mending mending;
   int cells = 128, width = 480, height = 400;
   bool star = false, json = false;
 };
@@ -187,7 +188,7 @@ void run(const Options& options, const Common& common) {
   std::unique_ptr<AtomicFile> picture;
   if (!options.picture.empty()) picture = std::make_unique<AtomicFile>(options.picture);
 
-  const Body body = make_body(ClosedSurface::from(load_mesh(options.mesh)), origin, 1);
+  const Body body = make_body(ClosedSurface::from(load_mended(options.mesh, options.mending)), origin, 1);
   std::vector<std::string> notes = body.surface.mesh().notes;
   std::string note;
   const auto backend = open_backend(common, &note);
@@ -252,6 +253,7 @@ void add_inflate(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand(
       "inflate", "The body inflated by a distance, and by how much it must be to be star-shaped about a point");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  add_mend_options(*command, options->mending);
   command
       ->add_option("--levels", options->levels,
                    "Distances from the body, such as 0.05,0.1,star, where star is the least that makes it star-shaped")

@@ -1,10 +1,10 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/mend_options.hpp"
 
 #include "host/cli/expand_flow.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/map_file.hpp"
-#include "host/io/mesh_source.hpp"
 #include "host/map/harmonic.hpp"
 #include "host/map/smooth.hpp"
 #include "host/map/stretch.hpp"
@@ -22,6 +22,7 @@ namespace {
 
 struct Options {
   std::string mesh = "builtin:cow";
+  Mending mending;
   std::string method; // empty: harmonic for a recipe, else stretch
   std::string weights = "cotangent", pole = "back", recipe;
   double disk_scale = 0;
@@ -121,7 +122,8 @@ void run(const Options& options, const Common& common) {
   if (!options.output.empty()) refuse_same_file(options.mesh, options.output);
   if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
 
-  const ManifoldSurface surface = ManifoldSurface::from(ClosedSurface::from(load_mesh(options.mesh)));
+  const ManifoldSurface surface =
+      ManifoldSurface::from(ClosedSurface::from(load_mended(options.mesh, options.mending)));
   require_sphere(surface);
   // No Vulkan kernel makes maps: a device is opened only if it is asked for.
   if (common.device != "auto" && common.device != "cpu") {
@@ -186,6 +188,7 @@ void add_map(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("map", "A map of a mesh of genus 0 to the sphere, and what it is worth");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  add_mend_options(*command, options->mending);
   command
       ->add_option(
           "--method", options->method,

@@ -1,10 +1,10 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/expand_flow.hpp"
+#include "host/cli/mend_options.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/mesh_source.hpp"
 #include "host/io/streamline_file.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
@@ -26,6 +26,7 @@ constexpr std::size_t default_count = 200, most_lines = 1'000'000;
 
 struct Options {
   std::string mesh = "builtin:cow", plane = "yz", origin = "0,0,0", output;
+  Mending mending;
   std::size_t count = default_count;
   double time = 0, spacing = 0, within = -1, tolerance = FlowOptions{}.tolerance;
   bool json = false;
@@ -82,7 +83,7 @@ void run(const Options& options, const Common& common) {
   if (layout != Layout::none && !to_stdout) file = std::make_unique<AtomicFile>(options.output);
 
   auto start = Clock::now();
-  const ClosedSurface surface = ClosedSurface::from(load_mesh(options.mesh));
+  const ClosedSurface surface = ClosedSurface::from(load_mended(options.mesh, options.mending));
   const RawMesh& mesh = surface.mesh();
   std::vector<std::string> notes = mesh.notes;
   table.mesh = mesh.name;
@@ -159,6 +160,7 @@ void add_streamlines(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand(
       "streamlines", "Streamlines of the distance's flow off the cut of a surface with a plane, as data for a figure");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->required();
+  add_mend_options(*command, options->mending);
   command
       ->add_option("--plane", options->plane,
                    "yz, xy or xz through the mesh's origin, or NX,NY,NZ,D: the points with NX x + NY y + NZ z = D")

@@ -39,15 +39,6 @@ private:
   unsigned threads_;
 };
 
-// The sign of the doubled area of the triangle (a, b, p) seen from above, p moved by an infinitesimal along x and by its
-// square along y: 0 only where a and b lie above each other.
-int perturbed_side(const Vec3& a, const Vec3& b, const Vec3& p) {
-  const int side = orientation(Vec3(a.x(), a.y(), 1), Vec3(b.x(), b.y(), 1), Vec3(p.x(), p.y(), 1));
-  if (side != 0) return side;
-  if (a.y() != b.y()) return a.y() > b.y() ? 1 : -1;
-  return (b.x() > a.x()) - (b.x() < a.x());
-}
-
 } // namespace
 
 std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces,
@@ -82,10 +73,7 @@ int winding_number(const plan::ClosestTree& tree, const Vec3& query) {
   for (const std::uint32_t face : column) {
     const Face& f = tree.faces[face];
     const Vec3 &a = tree.vertices[f[0]], &b = tree.vertices[f[1]], &c = tree.vertices[f[2]];
-    const int side = perturbed_side(a, b, query);
-    if (side == 0 || perturbed_side(b, c, query) != side || perturbed_side(c, a, query) != side) continue;
-    // The face looks up if side is 1; it is above the query if the query is on the other side of it.
-    if (side_of_plane(a, b, c, query) == (up ? side : -side)) winding += up ? side : -side;
+    winding += vertical_crossing(a, b, c, query, up);
   }
   return winding;
 }

@@ -5,6 +5,7 @@
 #include "host/io/sha256.hpp"
 #include "host/io/shown.hpp"
 #include "host/io/words.hpp"
+#include "host/version.hpp"
 
 #include <fmt/core.h>
 
@@ -195,6 +196,21 @@ RawMesh parse_off(std::string_view bytes, const std::string& name) {
   RawMesh mesh = OffParser(without_byte_order_mark(bytes), name).parse();
   mesh.sha256 = sha256_hex(bytes);
   return mesh;
+}
+
+void write_off(const TriangleSurface& surface, std::span<const std::string> comments, AtomicFile& file) {
+  check(surface);
+  const auto comment = [&](std::string text) {
+    for (char& c : text)
+      if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    file.write(fmt::format("# {}\n", text));
+  };
+  file.write("OFF\n");
+  comment(fmt::format("cowgpu {}, surface {}", version, surface.name));
+  for (const std::string& text : comments) comment(text);
+  file.write(fmt::format("{} {} 0\n", surface.vertices.size(), surface.faces.size()));
+  for (const Vec3& p : surface.vertices) file.write(fmt::format("{:.17g} {:.17g} {:.17g}\n", p.x(), p.y(), p.z()));
+  for (const Face& f : surface.faces) file.write(fmt::format("3 {} {} {}\n", f[0], f[1], f[2]));
 }
 
 } // namespace cowgpu

@@ -1,8 +1,11 @@
-// Reads meshes in the Object File Format of Geomview (http://www.geomview.org/docs/html/OFF.html).
+// Reads and writes meshes in the Object File Format of Geomview (http://www.geomview.org/docs/html/OFF.html).
 #pragma once
 
+#include "host/io/atomic_file.hpp"
 #include "host/mesh/raw_mesh.hpp"
+#include "host/mesh/triangle_surface.hpp"
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,5 +33,10 @@ namespace cowgpu {
 /// - file_truncated: the file ends before what it announces (says how many vertices and faces were found);
 /// - mesh_index_range: a face names a vertex that does not exist (line of the file, face from 0).
 RawMesh parse_off(std::string_view bytes, const std::string& name);
+
+/// Writes vertices and faces in their order, numbers in as many digits as read back bit for bit; the caller commits the file.
+/// The surface's name and `comments` become comments, line breaks in them blanks; normals and scalars are left out. Throws
+/// what check(surface) throws, Error(cannot_write).
+void write_off(const TriangleSurface& surface, std::span<const std::string> comments, AtomicFile& file);
 
 } // namespace cowgpu

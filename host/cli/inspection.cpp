@@ -1,0 +1,210 @@
+#include "host/cli/inspection.hpp"
+
+#include "host/cli/console.hpp"
+#include "host/error.hpp"
+#include "host/mesh/topology.hpp"
+#include "host/report/json_parts.hpp"
+#include "host/report/result.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace cowgpu::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double largest_coordinate = 1e100; // whose differences and their products of three do not overflow
+
+Json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+void judge(Inspection& found) {
+  try {
+    ClosedSurface closed = ClosedSurface::from(found.mesh);
+    try {
+      ManifoldSurface::from(std::move(closed));
+    } catch (const Error& error) {
+      found.maps = fmt::format("no [{}]: {}", name(error.fault()), error.what());
+    }
+  } catch (const Error& error) {
+    found.moments = found.maps = fmt::format("no [{}]: {}", name(error.fault()), error.what());
+  }
+}
+
+Vec3 middle(const FacePair& pair) {
+  return pair.how.from / 2 + pair.how.to / 2;
+}
+
+/// The first pairs to be named: those that are more than touching before the others.
+std::vector<const FacePair*> first_pairs(const SelfIntersections& found) {
+  std::vector<const FacePair*> first;
+  for (const bool touching : {false, true})
+    for (const FacePair& pair : found.pairs)
+      if (first.size() < listed_pairs && (pair.how.meeting == Meeting::touching) == touching) first.push_back(&pair);
+  return first;
+}
+
+Json json_of(const RawMesh& mesh, const SelfIntersections& found) {
+  Json listed = Json::array();
+  for (const FacePair* pair : first_pairs(found)) {
+    Json one = {
+        {"faces", {pair->first, pair->second}}, {"kind", name(pair->how.meeting)}, {"place", json_of(middle(*pair))}};
+    if (!mesh.face_lines.empty()) one["lines"] = {mesh.face_lines[pair->first], mesh.face_lines[pair->second]};
+    listed.push_back(one);
+  }
+  return {{"crossing", found.crossing}, {"overlapping", found.overlapping}, {"touching", found.touching},
+          {"faces", found.faces},       {"complete", found.complete},       {"listed", listed}};
+}
+
+Json json_of(const RegionVolume& region, double volume) {
+  return {{"volume", region.volume}, {"uncertainty", region.uncertainty}, {"fraction", region.volume / volume}};
+}
+
+std::string text_of(const RegionVolume& region, double volume) {
+  if (region.volume == 0) return "none";
+  return fmt::format("{:.6g} +- {:.1g}, {:.4g} % of the volume", region.volume, region.uncertainty,
+                     100 * region.volume / volume);
+}
+
+} // namespace
+
+Inspection inspect(RawMesh mesh, Monitor& monitor, unsigned threads) {
+  Inspection found;
+  found.mesh = std::move(mesh);
+  check_stop(monitor);
+  found.audit = audit(found.mesh);
+  check_stop(monitor);
+  judge(found);
+  check_stop(monitor);
+  const Audit& a = found.audit;
+  const std::vector<Vec3>& vertices = found.mesh.vertices;
+  const std::vector<Face>& faces = found.mesh.faces;
+  const double largest = std::max(a.box.min.cwiseAbs().maxCoeff(), a.box.max.cwiseAbs().maxCoeff());
+  if (!a.finite || faces.empty() || largest > largest_coordinate) return found;
+  const plan::Bvh tree(vertices, faces);
+  found.intersections = self_intersections(vertices, faces, tree, monitor, threads);
+  if (!a.volume) return found;
+  if (found.intersections->complete)
+    found.overlap = overlap(vertices, faces, tree, *found.intersections, monitor, threads);
+  if (const LargestBall ball = largest_ball(vertices, faces, tree, monitor); ball.radius > 0) found.largest_ball = ball;
+  if (!a.centre_of_mass) return found;
+  found.brillouin_radius = brillouin_radius(vertices, faces, *a.centre_of_mass);
+  found.inscribed_radius = inscribed_radius(vertices, faces, tree, *a.centre_of_mass);
+  return found;
+}
+
+void write_inspection_json(const Inspection& found, const std::string& output) {
+  const Audit& a = found.audit;
+  const RawMesh& mesh = found.mesh;
+  Json out = {{"schema", "cowgpu.inspect.v1"},
+              {"name", mesh.name},
+              {"sha256", mesh.sha256},
+              {"vertices", a.vertices},
+              {"faces", a.faces},
+              {"edges", a.edges},
+              {"moments", found.moments},
+              {"maps", found.maps},
+              {"finite", a.finite},
+              {"closed", a.closed},
+              {"edge_manifold", a.edge_manifold},
+              {"vertex_manifold", a.vertex_manifold},
+              {"consistently_oriented", a.consistently_oriented},
+              {"outward", a.outward},
+              {"components", a.components},
+              {"cavities", a.cavities},
+              {"euler_characteristic", a.euler_characteristic},
+              {"open_edges", a.open_edges},
+              {"unbalanced_edges", a.unbalanced_edges},
+              {"crowded_edges", a.crowded_edges},
+              {"pinched_vertices", a.pinched_vertices},
+              {"unused_vertices", a.unused_vertices},
+              {"degenerate_faces", a.degenerate_faces},
+              {"duplicate_faces", a.duplicate_faces},
+              {"coincident_groups", a.coincident_groups}};
+  if (a.genus) out["genus"] = *a.genus;
+  if (a.finite) {
+    out["area"] = a.area;
+    out["bounding_box"] = {json_of(a.box.min), json_of(a.box.max)};
+    out["shortest_edge"] = a.shortest_edge;
+    out["longest_edge"] = a.longest_edge;
+  }
+  if (found.intersections) out["self_intersections"] = json_of(mesh, *found.intersections);
+  if (a.volume) out["volume"] = *a.volume;
+  if (found.overlap) {
+    out["overlapped"] = json_of(found.overlap->overlapped, *a.volume);
+    out["inverted"] = json_of(found.overlap->inverted, *a.volume);
+  }
+  if (a.centre_of_mass) out["centre_of_mass"] = json_of(*a.centre_of_mass);
+  if (found.brillouin_radius) {
+    out["brillouin_radius"] = *found.brillouin_radius;
+    out["inscribed_radius"] = found.inscribed_radius ? Json(*found.inscribed_radius) : Json();
+  }
+  if (found.largest_ball)
+    out["largest_ball"] = {{"centre", json_of(found.largest_ball->centre)},
+                           {"radius", found.largest_ball->radius},
+                           {"bound", found.largest_ball->bound}};
+  out["notes"] = mesh.notes;
+  if (!output.empty()) out["output"] = output;
+  write_stdout(json_text(out) + "\n");
+}
+
+void write_inspection_text(const Inspection& found) {
+  const Audit& a = found.audit;
+  const RawMesh& mesh = found.mesh;
+  const auto row = [](const char* what, const std::string& value) {
+    write_stdout(fmt::format("  {:<24} {}\n", what, value));
+  };
+  const auto yes = [](bool value) { return std::string(value ? "yes" : "no"); };
+  const auto point = [](const Vec3& v) { return fmt::format("({:.15g}, {:.15g}, {:.15g})", v.x(), v.y(), v.z()); };
+  write_stdout(mesh_line(mesh) + "\n");
+  for (const std::string& note : mesh.notes) write_stdout("note: " + note + "\n");
+  row("fit for moments", found.moments);
+  row("fit for sphere maps", found.maps);
+  row("vertices, edges, faces", fmt::format("{}, {}, {}", a.vertices, a.edges, a.faces));
+  row("finite", yes(a.finite));
+  row("closed", a.closed ? "yes" : fmt::format("no: {} open edges", a.open_edges));
+  row("oriented", a.consistently_oriented ? "yes" : fmt::format("no: {} unbalanced edges", a.unbalanced_edges));
+  row("edge-manifold", a.edge_manifold ? "yes" : fmt::format("no: {} edges with more than two faces", a.crowded_edges));
+  row("vertex-manifold", a.vertex_manifold ? "yes" : fmt::format("no: {} pinched vertices", a.pinched_vertices));
+  row("outward", yes(a.outward));
+  row("shells, cavities", fmt::format("{}, {}", a.components, a.cavities));
+  row("Euler characteristic",
+      fmt::format("{}{}", a.euler_characteristic, a.genus ? fmt::format(", genus {}", *a.genus) : ""));
+  row("degenerate, duplicate", fmt::format("{}, {} faces", a.degenerate_faces, a.duplicate_faces));
+  row("unused, coincident", fmt::format("{} vertices, {} places", a.unused_vertices, a.coincident_groups));
+  if (const auto& met = found.intersections) {
+    row("self-intersections", met->pairs.empty() ? "none"
+                                                 : fmt::format("{}{} pairs of faces cross, {} overlap, {} touch",
+                                                               met->complete ? "" : "at least ", met->crossing,
+                                                               met->overlapping, met->touching));
+    for (const FacePair* pair : first_pairs(*met))
+      row("", fmt::format("{}: {} and {} near {}", name(pair->how.meeting), where(mesh, pair->first),
+                          where(mesh, pair->second), point(middle(*pair))));
+    if (met->pairs.size() > listed_pairs) row("", fmt::format("and {} more", met->pairs.size() - listed_pairs));
+  }
+  if (a.finite) {
+    row("bounding box", point(a.box.min) + " to " + point(a.box.max));
+    row("area", fmt::format("{:.15g}", a.area));
+    row("edge lengths", fmt::format("{:.6g} to {:.6g}", a.shortest_edge, a.longest_edge));
+  }
+  if (a.volume) row("volume", fmt::format("{:.15g}", *a.volume));
+  if (found.overlap) {
+    row("overlapped volume", text_of(found.overlap->overlapped, *a.volume));
+    row("inside out", text_of(found.overlap->inverted, *a.volume));
+  }
+  if (a.centre_of_mass) row("centre of mass", point(*a.centre_of_mass));
+  if (found.brillouin_radius) {
+    row("Brillouin radius", fmt::format("{:.15g} about it", *found.brillouin_radius));
+    row("inscribed radius", found.inscribed_radius ? fmt::format("{:.15g} about it", *found.inscribed_radius)
+                                                   : "none: it lies outside the body");
+  }
+  if (const auto& ball = found.largest_ball)
+    row("largest ball inside",
+        fmt::format("radius {:.6g} about {} (none above {:.6g})", ball->radius, point(ball->centre), ball->bound));
+}
+
+} // namespace cowgpu::cli

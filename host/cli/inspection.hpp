@@ -1,0 +1,35 @@
+// What `inspect` finds out about a mesh, and how it says so.
+#pragma once
+
+#include "host/mesh/audit.hpp"
+#include "host/mesh/inscribed.hpp"
+#include "host/mesh/overlap.hpp"
+#include "host/mesh/self_intersections.hpp"
+
+#include <optional>
+#include <string>
+
+namespace cowgpu::cli {
+
+/// Pairs of intersecting faces that are named.
+inline constexpr std::size_t listed_pairs = 10;
+
+struct Inspection {
+  RawMesh mesh;
+  Audit audit;
+  std::string moments = "yes", maps = "yes";      ///< which of the two types it satisfies, or the reason why not
+  std::optional<SelfIntersections> intersections; ///< of finite meshes with faces
+  std::optional<Overlap> overlap;                 ///< of closed, consistently oriented ones whose pairs are all known
+  std::optional<double> brillouin_radius;         ///< about the centre of mass
+  std::optional<double> inscribed_radius;         ///< about the centre of mass, if that lies inside
+  std::optional<LargestBall> largest_ball;        ///< if there is a point inside
+};
+
+/// The mesh is judged as it is. Throws Error(mesh_index_range, interrupted).
+Inspection inspect(RawMesh mesh, Monitor& monitor, unsigned threads);
+
+/// To standard output. `output`: the file that the mesh was written to, or "".
+void write_inspection_json(const Inspection& found, const std::string& output);
+void write_inspection_text(const Inspection& found);
+
+} // namespace cowgpu::cli

@@ -1,0 +1,26 @@
+#include "host/cli/mend_options.hpp"
+
+#include "host/cli/commands.hpp"
+#include "host/io/mesh_source.hpp"
+
+namespace cowgpu::cli {
+
+void add_mend_options(CLI::App& command, Mending& mending) {
+  command
+      .add_option("--weld", mending.weld,
+                  "Mend: merge vertices within EPS of each other, in the mesh's unit (0: at one point exactly)")
+      ->check(non_negative_number())
+      ->type_name("EPS");
+  command.add_flag("--orient", mending.orient,
+                   "Mend: turn faces so that each shell is consistent and looks outwards, cavities inwards");
+  command.add_flag("--largest-shell", mending.largest_shell, "Mend: keep the shell of the largest volume only");
+}
+
+RawMesh load_mended(const std::string& name, const Mending& mending) {
+  RawMesh mesh = load_mesh(name);
+  ConsoleMonitor monitor(ProgressStyle::none);
+  mend(mesh, mending, monitor);
+  return mesh;
+}
+
+} // namespace cowgpu::cli

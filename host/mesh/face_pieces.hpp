@@ -1,0 +1,25 @@
+// A face cut along the segments in which others meet it.
+#pragma once
+
+#include "host/types.hpp"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace cowgpu {
+
+using Vec2 = Eigen::Vector2d;
+using Segment2 = std::pair<Vec2, Vec2>;
+
+/// Cuts the triangle a, b, c, which must have area, into trapezoids and triangles such that no segment passes through the
+/// inside of one: by horizontals through every end of a segment and every crossing of two. Segments may leave the triangle.
+/// Calls `piece(middle, fraction)` with a point of each inside and its part of the area; pieces below 1e-14 of the area are
+/// left out. Time grows with the segments squared where many lie at one height.
+void for_each_piece(const Vec2& a, const Vec2& b, const Vec2& c, std::span<const Segment2> segments,
+                    const std::function<void(const Vec2& middle, double fraction)>& piece);
+
+} // namespace cowgpu
