@@ -39,7 +39,7 @@ foreach(folder "" mesh/ map/ spectrum/ flow/ io/)
   list(FILTER headers EXCLUDE REGEX "/(flush_denormals|netcdf|quarter_turn|result_json|tinygltf|version)\\.hpp$")
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/${folder} COMPONENT development)
 endforeach()
-install(FILES ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # DirectionSynthesis holds one
+install(FILES ${PROJECT_SOURCE_DIR}/host/plan/bvh.hpp ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # held by classes of theirs
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/plan COMPONENT development)
 install(EXPORT cowgpu-targets NAMESPACE cowgpu:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/cowgpu COMPONENT development)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/cowgpu-config.cmake CONTENT [[

@@ -93,7 +93,7 @@ RawMesh torn(const RawMesh& mesh, double distance, std::uint32_t seed) {
 
 } // namespace
 
-TEST_CASE("--orient mends flipped faces, patches and bodies turned inside out", "[mend]") {
+TEST_CASE("mending with --orient mends flipped faces, patches and bodies turned inside out", "[mend]") {
   for (const char* file : {"mesh-unbalanced--flipped-face.off", "mesh-unbalanced--flipped-patch.off",
                            "mesh-inside-out--all-flipped.off", "mesh-inside-out--all-flipped.stl"}) {
     INFO(file);
@@ -108,7 +108,7 @@ TEST_CASE("--orient mends flipped faces, patches and bodies turned inside out", 
   CHECK_THAT(mended(refused("mesh-unbalanced--flipped-patch.off"), oriented).notes.back(), Contains("2 faces of 12"));
 }
 
-TEST_CASE("--orient turns as many faces as were turned and leaves good meshes alone", "[mend]") {
+TEST_CASE("mending with --orient turns as many faces as were turned and leaves good meshes alone", "[mend]") {
   for (const RawMesh& mesh : {builtin_mesh("cow@2"), torus(30, 20), two_shells(), shell_with_cavity()}) {
     RawMesh same = mesh, mixed = half_flipped(mesh, 4);
     std::size_t turned = 0;
@@ -122,7 +122,7 @@ TEST_CASE("--orient turns as many faces as were turned and leaves good meshes al
   }
 }
 
-TEST_CASE("--orient keeps cavities inward, bodies in cavities outward, and shells that overlap outward", "[mend]") {
+TEST_CASE("mending with --orient keeps cavities inward, bodies in cavities outward, and shells that overlap outward", "[mend]") {
   const RawMesh body = box({9, 9, 9}), hole = box({6, 6, 6}, {1, 1, 1}), stone = box({2, 2, 2}, {2, 2, 2});
   const RawMesh nested = together(together(stone, hole), body); // all three outward
   RawMesh mesh = half_flipped(nested, 7);
@@ -145,7 +145,7 @@ TEST_CASE("--orient keeps cavities inward, bodies in cavities outward, and shell
   CHECK(volume(ClosedSurface::from(neighbours)) == Approx(2).epsilon(1e-14));
 }
 
-TEST_CASE("--orient refuses one-sided shells and edges of more than two faces by name", "[mend]") {
+TEST_CASE("mending with --orient refuses one-sided shells and edges of more than two faces by name", "[mend]") {
   for (const std::uint32_t n : {5U, 8U}) CHECK(fault_of(moebius_strip(n), oriented) == Fault::mesh_unbalanced);
   CHECK(fault_of(refused("mesh-edge-manifold--edge-with-four-faces.off"), oriented) == Fault::mesh_edge_manifold);
   CHECK(fault_of(refused("mesh-edge-manifold--repeated-vertex.off"), oriented) == Fault::mesh_edge_manifold);
@@ -156,7 +156,7 @@ TEST_CASE("--orient refuses one-sided shells and edges of more than two faces by
   CHECK_THROWS_AS(ClosedSurface::from(open), Error);
 }
 
-TEST_CASE("--weld closes seams of doubled vertices and gaps", "[mend]") {
+TEST_CASE("mending with --weld closes seams of doubled vertices and gaps", "[mend]") {
   CHECK(mended_volume(refused("mesh-open--seam-of-doubled-vertices.off"), welded(0)) == 30);
   CHECK(mended_volume(refused("mesh-open--gap-of-one-unit-in-the-last-place.stl"), welded(1e-6)) == Approx(6));
   CHECK_THROWS_AS(ClosedSurface::from(mended(refused("mesh-open--gap-of-one-unit-in-the-last-place.stl"), welded(0))),
@@ -173,7 +173,7 @@ TEST_CASE("--weld closes seams of doubled vertices and gaps", "[mend]") {
   }
 }
 
-TEST_CASE("--weld merges what every pair of vertices says must be merged", "[mend]") {
+TEST_CASE("mending with --weld merges what every pair of vertices says must be merged", "[mend]") {
   std::mt19937 random(12);
   for (const double distance : {1e-3, 0.02, 0.06}) {
     RawMesh mesh;
@@ -198,7 +198,7 @@ TEST_CASE("--weld merges what every pair of vertices says must be merged", "[men
   }
 }
 
-TEST_CASE("--weld leaves out faces that collapse and says so", "[mend]") {
+TEST_CASE("mending with --weld leaves out faces that collapse and says so", "[mend]") {
   RawMesh mesh = box({1, 1, 1});
   mesh.vertices.push_back(mesh.vertices[mesh.faces[0][0]] + Vec3(1e-9, 0, 0));
   const auto extra = std::uint32_t(mesh.vertices.size() - 1);
@@ -214,7 +214,7 @@ TEST_CASE("--weld leaves out faces that collapse and says so", "[mend]") {
     CHECK(fault_of(mesh, welded(bad)) == Fault::bad_argument);
 }
 
-TEST_CASE("--largest-shell keeps one shell and says what it left out", "[mend]") {
+TEST_CASE("mending with --largest-shell keeps one shell and says what it left out", "[mend]") {
   const RawMesh three = together(together(box({1, 1, 1}, {9, 0, 0}), box({2, 3, 5})), icosphere(1, 0.5));
   const RawMesh one = mended(three, largest);
   CHECK(one.vertices == box({2, 3, 5}).vertices);

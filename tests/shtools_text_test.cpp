@@ -179,7 +179,7 @@ TEST_CASE("every prefix and many damaged copies of a .sh file are read or named 
     CHECK((found == "none" || found.rfind("file-", 0) == 0));
     read += found == "none";
   }
-  CHECK(read == 1); // without the last line's end
+  CHECK(read == 0); // not even without the last line's end
   for (std::uint32_t seed = 0; seed < 600; ++seed) {
     const std::string found = fault_of([&] { read_as_text(path, damaged(good, seed)); });
     INFO(seed << ": " << found);

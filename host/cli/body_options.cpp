@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <cmath>
 #include <numbers>
 
 namespace cowgpu::cli {
@@ -21,7 +22,8 @@ Eigen::Matrix3d parse_rotation(const std::string& text) {
                 fmt::format("--rotate {}: it takes three angles ALPHA,BETA,GAMMA in degrees, of the rotation "
                             "R_z(ALPHA) R_y(BETA) R_z(GAMMA)",
                             text));
-  const Vec3 turns = *angles / 180 * std::numbers::pi; // multiples of 90 degrees stay exact
+  // Whole turns are left out exactly, and multiples of 90 degrees stay exact.
+  const Vec3 turns = angles->unaryExpr([](double a) { return std::remainder(a, 360.0); }) / 180 * std::numbers::pi;
   return rotation_matrix({turns[0], turns[1], turns[2]});
 }
 
@@ -104,15 +106,18 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
       .add_option(
           "--length-unit", options.length_unit,
           "The length that 1 in the mesh's file stands for: mm, km, 2.3m ...; results are in metres and kilograms")
-      ->type_name("LENGTH");
+      ->type_name("LENGTH")
+      ->check(not_empty());
   command
       .add_option("--axes", options.axes,
                   "The mesh's axes that become x, y and z: x,-z,y for x' = x, y' = -z, z' = y (right-handed, exact)")
-      ->type_name("A,B,C");
+      ->type_name("A,B,C")
+      ->check(not_empty());
   command
       .add_option("--rotate", options.rotate,
                   "Then turn the body: R_z(ALPHA) R_y(BETA) R_z(GAMMA), degrees, about fixed axes, the rightmost first")
-      ->type_name("ALPHA,BETA,GAMMA");
+      ->type_name("ALPHA,BETA,GAMMA")
+      ->check(not_empty());
   command
       .add_option("--part", options.parts,
                   "A part FILE=DENSITY: inside it so much is added to the density (negative: a hole); can be repeated. "

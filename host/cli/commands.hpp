@@ -54,6 +54,8 @@ void add_manual(CLI::App& app);
 /// Checks of options: a finite number above 0, or one from 0 on.
 CLI::Validator positive_number();
 CLI::Validator non_negative_number();
+/// A text that is not empty: what a shell's variable that is not set would give.
+CLI::Validator not_empty();
 
 /// Adds `roundtrip` to the command `transform`.
 void add_roundtrip(CLI::App& transform, Common& common);

@@ -33,6 +33,10 @@ CLI::Validator positive_number() {
   return number_check("a finite number above 0", [](double value) { return value > 0; });
 }
 
+CLI::Validator not_empty() {
+  return {[](std::string& text) { return std::string(text.empty() ? "the value is empty" : ""); }, ""};
+}
+
 CLI::Validator non_negative_number() {
   return number_check("a finite number from 0 on", [](double value) { return value >= 0; });
 }

@@ -140,12 +140,14 @@ void add_convert(CLI::App& app, Common& common) {
                    "Of a body: multipoles (Q_lm / R^l) or potential (C_lm of geodesy; what .gfc and .sh hold)")
       ->check(CLI::IsMember({"multipoles", "potential"}));
   command->add_option("--reference-radius", options->reference_radius, "Of OUT, in the length unit of IN")
-      ->type_name("R");
+      ->type_name("R")
+      ->check(not_empty());
   command
       ->add_option("--rotate", options->rotation,
                    "Turn the body about its origin (or the fields) by R_z(ALPHA) R_y(BETA) R_z(GAMMA), the rightmost "
                    "first")
-      ->type_name("ALPHA,BETA,GAMMA");
+      ->type_name("ALPHA,BETA,GAMMA")
+      ->check(not_empty());
   command->add_option("--angle-unit", options->angle_unit, "Of --rotate: degrees or radians")
       ->check(CLI::IsMember({"degrees", "radians"}))
       ->capture_default_str();

@@ -135,7 +135,7 @@ void add_diff(CLI::App& app, Common& common) {
       ->add_option("--tolerance", options->tolerance,
                    "Exit with 1 where a degree differs by more than this part of the largest norm among it and its two "
                    "neighbours on each side")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->type_name("T");
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.diff.v1.json)");
   command->footer("B is brought to the kind and reference radius of A. Exit code 0, or 1 beyond --tolerance.\n"

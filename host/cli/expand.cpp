@@ -259,7 +259,7 @@ void add_expand(CLI::App& app, Common& common) {
   CLI::Option* time =
       command
           ->add_option("--time", options->time,
-                       "flow: T, how far the body is inflated, in the mesh's length unit; auto: the least "
+                       "flow: T, how far the body is inflated, in the body's length unit; auto: the least "
                        "for which it is star-shaped about the origin")
           ->type_name("auto|T")
           ->capture_default_str();

@@ -53,6 +53,10 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
   else {
     const std::string bytes = read_file(choice.map_file);
     result.map = read_map(bytes, choice.map_file, surface, method);
+    if (!body.placement.rotation.isIdentity(0)) {
+      for (Vec3& p : result.map.positions) p = body.placement.rotation * p;
+      result.map.notes.push_back("the map of the file was turned with the body");
+    }
     result.map_file = choice.map_file;
     result.map_sha256 = sha256_hex(std::string_view(bytes));
   }

@@ -2,6 +2,7 @@
 
 #include "host/cli/console.hpp"
 #include "host/error.hpp"
+#include "host/mesh/half_edges.hpp"
 #include "host/mesh/topology.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
@@ -26,7 +27,7 @@ void judge(Inspection& found) {
   try {
     ClosedSurface closed = ClosedSurface::from(found.mesh);
     try {
-      ManifoldSurface::from(std::move(closed));
+      require_sphere(ManifoldSurface::from(std::move(closed)));
     } catch (const Error& error) {
       found.maps = fmt::format("no [{}]: {}", name(error.fault()), error.what());
     }

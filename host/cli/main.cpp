@@ -41,6 +41,17 @@ int run(int argc, char** argv) {
   cli::add_render(app, common);
   cli::add_bench(app, common);
   cli::add_manual(app);
+  if (argc > 1 && argv[1][0] != '-') {
+    std::string there;
+    bool known = false;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+      known = known || command->get_name() == argv[1];
+      there += (there.empty() ? "" : ", ") + command->get_name();
+    }
+    if (!known)
+      return fail(name(Fault::bad_argument).data(),
+                  fmt::format("there is no command '{}'; there are {}", argv[1], there).c_str(), 2);
+  }
   try {
     app.parse(argc, argv);
     cli::flush_stdout();

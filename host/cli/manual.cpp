@@ -150,6 +150,7 @@ std::string bash_completion(const CLI::App& app) {
          paths + "' bodies='" + bodies + R"('
   read -ra all <<<"$line"
   [[ $line == *[[:blank:]] ]] && all+=('')
+  ((${#all[@]} > 1)) || return 0
   current=${all[-1]} previous=${all[-2]}
   for ((i = 1; i < ${#all[@]} - 1; ++i)); do
     [[ $known == *"|${path:+$path }${all[i]}|"* ]] && path="${path:+$path }${all[i]}"
@@ -172,7 +173,7 @@ std::string bash_completion(const CLI::App& app) {
       COMPREPLY+=($(compgen -f -- "$current"))
     fi
   fi
-  if [[ $current == *:* && $COMP_WORDBREAKS == *:* ]]; then
+  if [[ $current == *:* && ${COMP_WORDBREAKS-} == *:* ]]; then
     local before=${current%"${current##*:}"}
     COMPREPLY=("${COMPREPLY[@]#"$before"}")
   fi

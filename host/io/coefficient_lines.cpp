@@ -15,6 +15,7 @@ bool WordLines::next() {
   if (rest_.empty()) return false;
   const auto end = rest_.find('\n');
   line = rest_.substr(0, end);
+  unterminated = end == std::string_view::npos;
   rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
   if (line.ends_with('\r')) line.remove_suffix(1);
   ++number;
@@ -51,6 +52,12 @@ int WordLines::whole(std::string_view word, const char* what, int largest) const
     fail(Fault::file_syntax,
          fmt::format("{} is '{}'; whole numbers from 0 to {} are possible", what, shown(word), largest));
   return value;
+}
+
+void WordLines::judge_end(bool ours, std::vector<std::string>& notes) const {
+  if (!unterminated) return;
+  if (ours) fail(Fault::file_truncated, "the last line has no end: the file was cut, perhaps within a number");
+  notes.push_back("the last line has no end; if the file was cut there, its last number is a part of one");
 }
 
 void WordLines::fail(Fault fault, const std::string& sentence) const {

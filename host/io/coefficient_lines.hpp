@@ -18,12 +18,16 @@ public:
   bool next();
   std::string_view line;
   std::vector<std::string_view> words;
-  std::size_t number = 0; ///< of the line, from 1
+  std::size_t number = 0;    ///< of the line, from 1
+  bool unterminated = false; ///< the line is the file's last one and has no end: it may be a part of one
 
   /// A finite number, its exponent after E, e, D or d. Throws Error(file_syntax).
   double real(std::string_view word) const;
   /// A whole number from 0 to `largest`. Throws Error(file_syntax).
   int whole(std::string_view word, const char* what, int largest) const;
+  /// Of the last line, if it has no end: a file of ours (`ours`) was cut there; of another one a note says so. Throws
+  /// Error(file_truncated).
+  void judge_end(bool ours, std::vector<std::string>& notes) const;
   [[noreturn]] void fail(Fault fault, const std::string& sentence) const;
   const std::string& file() const { return file_; }
 

@@ -20,11 +20,6 @@ std::string text_of(double value) {
 }
 
 // One line, whatever a command line or a mesh's name held.
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  return text;
-}
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -128,6 +123,12 @@ private:
 
 } // namespace
 
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  return text;
+}
+
 std::string place(const std::string& file, std::size_t line) {
   return line ? fmt::format("{}:{}", file, line) : file;
 }
@@ -181,7 +182,8 @@ std::string comment_lines(const CoefficientSet& set, const std::vector<std::stri
 void take_comment(std::string_view line, std::size_t number, Metadata& metadata) {
   const std::string_view comment = trimmed(trimmed(line).substr(trimmed(line).starts_with('#')));
   const auto space = comment.find_first_of(" \t");
-  if (space == std::string_view::npos) return;
+  constexpr std::size_t most_words = 4096; // far more than any file of ours has
+  if (space == std::string_view::npos || metadata.size() >= most_words) return;
   metadata.try_emplace(std::string(comment.substr(0, space)),
                        MetadataText{std::string(trimmed(comment.substr(space))), number});
 }

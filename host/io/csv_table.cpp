@@ -99,7 +99,8 @@ CsvTable read_csv(const std::filesystem::path& path) {
   while ((line = lines.next()) && (line->starts_with('#') || trimmed(*line).empty())) {
     const std::string_view comment = trimmed(trimmed(*line).substr(line->starts_with('#')));
     const auto space = comment.find_first_of(" \t");
-    if (space == std::string_view::npos) continue;
+    constexpr std::size_t most_words = 4096; // far more than any file of ours has
+    if (space == std::string_view::npos || table.attributes.size() >= most_words) continue;
     table.attributes.try_emplace(std::string(comment.substr(0, space)),
                                  CsvTable::Attribute{std::string(trimmed(comment.substr(space))), lines.number});
   }
@@ -125,6 +126,9 @@ CsvTable read_csv(const std::filesystem::path& path) {
     if (gap) table.fail(Fault::file_syntax, gap, "an empty line among the rows");
     read_row(table, *line, lines.number);
   }
+  if (table.attributes.contains("cowgpu") && !text.ends_with('\n'))
+    table.fail(Fault::file_truncated, lines.number,
+               "the last line has no end: the file was cut, perhaps within a number");
   return table;
 }
 

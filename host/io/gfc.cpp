@@ -23,6 +23,8 @@ struct Row {
   std::size_t line = 0;
 };
 
+constexpr std::size_t most_keywords = 1000; // those beyond are none of the format's
+
 // What stands before end_of_head.
 struct Head {
   std::map<std::string, std::string, std::less<>> values; // by keyword
@@ -39,7 +41,7 @@ Head read_head(WordLines& lines) {
     if (keyword.starts_with('#')) take_comment(lines.line, lines.number, head.metadata);
     if (keyword == "begin_of_head") {
       head.values.clear(); // what stands above it is no head
-    } else if (lines.words.size() > 1) {
+    } else if (lines.words.size() > 1 && head.values.size() < most_keywords) {
       head.values[std::string(keyword)] = lines.words[1];
       head.lines[std::string(keyword)] = lines.number;
     }
@@ -173,6 +175,7 @@ CoefficientSet read_gfc(const std::filesystem::path& path) {
   CoefficientSet set = read_facts(head, lines, lmax);
   bool errors = false;
   const std::vector<Row> rows = read_data(lines, lmax, errors);
+  lines.judge_end(head.metadata.contains("cowgpu"), set.notes);
   fill(set, rows, lmax, lines);
   if (errors) set.notes.push_back("the errors of the coefficients were left out");
   return set;

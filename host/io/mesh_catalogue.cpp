@@ -115,6 +115,10 @@ const CatalogueEntry& add_mesh(const fs::path& file) {
       throw Error(Fault::cannot_write,
                   fmt::format("the folder {} cannot be made: {}; name another one in COWGPU_MESHES",
                               to.parent_path().string(), failed.message()));
+    if (fs::exists(to, failed) && sha256_hex(read_file(to)) != hash)
+      throw Error(Fault::cannot_write, fmt::format("{} is another mesh, and is left as it is; move it away, or name "
+                                                   "another folder in COWGPU_MESHES",
+                                                   to.string()));
     AtomicFile out(to);
     out.write(bytes);
     out.commit();

@@ -14,8 +14,39 @@ namespace cowgpu::result_json {
 
 using nlohmann::json;
 
+namespace {
+
+// A document takes memory by its brackets: rows of numbers have one in ten bytes and more, and nothing is nested deeply.
+void check_brackets(const std::string& name, const std::string& bytes) {
+  constexpr int deepest = 64;
+  std::size_t open = 0;
+  int depth = 0;
+  bool text = false;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const char c = bytes[i];
+    if (text && c == '\\')
+      ++i;
+    else if (c == '"')
+      text = !text;
+    else if (!text && (c == '[' || c == '{')) {
+      ++open;
+      if (++depth > deepest)
+        throw Error(Fault::file_format,
+                    fmt::format("{}: the JSON is nested more than {} deep; no file of coefficients is", name, deepest));
+    } else if (!text && (c == ']' || c == '}'))
+      --depth;
+  }
+  if (open > 1000 + bytes.size() / 8)
+    throw Error(Fault::file_format, fmt::format("{}: {} lists and objects in {} bytes of JSON; no file of coefficients "
+                                                "has so many",
+                                                name, open, bytes.size()));
+}
+
+} // namespace
+
 json parse(const std::filesystem::path& path) {
   const std::string name = path.string(), bytes = read_file(path);
+  check_brackets(name, bytes);
   try {
     return json::parse(bytes);
   } catch (const json::parse_error& error) {

@@ -35,13 +35,14 @@ bool is_header(const WordLines& lines) {
   return lines.words.size() == 4 && !(all_digits(lines.words[0]) && all_digits(lines.words[1]));
 }
 
-void read_header(const WordLines& lines, CoefficientSet& set) {
+// Returns lmax as it stands there.
+double read_header(const WordLines& lines, CoefficientSet& set) {
   set.kind = CoefficientKind::potential;
   set.reference_radius = lines.real(lines.words[0]);
   set.gm = lines.real(lines.words[1]);
   lines.real(lines.words[2]);
-  lines.real(lines.words[3]);
   if (!(*set.reference_radius > 0)) lines.fail(Fault::file_syntax, "r0 must be above 0");
+  return lines.real(lines.words[3]);
 }
 
 Row read_row(const WordLines& lines, int l, int m) {
@@ -84,6 +85,7 @@ CoefficientSet read_shtools_text(const std::filesystem::path& path) {
   std::vector<Row> rows; // by l, then m
   int first_degree = 0, l = -1, m = 0;
   bool header = false, errors = false;
+  double header_lmax = -1;
   while (lines.next()) {
     if (is_comment(lines)) {
       take_comment(lines.line, lines.number, metadata);
@@ -91,7 +93,7 @@ CoefficientSet read_shtools_text(const std::filesystem::path& path) {
     }
     if (l < 0 && !header && is_header(lines)) {
       header = true;
-      read_header(lines, set);
+      header_lmax = read_header(lines, set);
       continue;
     }
     if (l < 0) l = first_degree = lines.whole(lines.words[0], "the first degree", largest_first_degree);
@@ -105,7 +107,12 @@ CoefficientSet read_shtools_text(const std::filesystem::path& path) {
   if (rows.empty()) lines.fail(Fault::file_truncated, "the file ends before the first row l, m, C, S");
   if (m > 0) lines.fail(Fault::file_truncated, fmt::format("the file ends before degree {}, order {}", l, m));
   set.lmax = l - 1;
+  if (header && header_lmax != set.lmax)
+    lines.fail(
+        header_lmax > set.lmax ? Fault::file_truncated : Fault::file_syntax,
+        fmt::format("the rows end at degree {}, and the line r0, gm, omega, lmax says {}", set.lmax, header_lmax));
   const bool ours = metadata.contains("cowgpu");
+  lines.judge_end(ours, set.notes);
   if (ours && metadata.contains("lmax")) {
     lines.number = metadata["lmax"].line;
     const int lmax = lines.whole(metadata["lmax"].text, "lmax", largest_file_degree);

@@ -79,8 +79,9 @@ Body make_body(ClosedSurface surface, const OriginChoice& origin, double density
   if (!(body.brillouin_radius <= 1e6 * size))
     throw Error(Fault::bad_argument,
                 fmt::format("the origin ({}, {}, {}) is {:.1e} body radii away; moments about it would be nothing but "
-                            "rounding: choose one within 1e6 radii, or the centre of mass",
-                            body.origin.x(), body.origin.y(), body.origin.z(), body.brillouin_radius / size));
+                            "rounding: choose one within 1e6 radii{}",
+                            body.origin.x(), body.origin.y(), body.origin.z(), body.brillouin_radius / size,
+                            origin.point ? ", or the centre of mass" : " with --origin"));
   return body;
 }
 

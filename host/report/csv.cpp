@@ -29,8 +29,8 @@ std::string mass_comments(const ExpandResult& result) {
   append_number(text, q.density);
   text += "\n";
   for (const Part& part : result.body.parts) {
-    text +=
-        fmt::format("# part {}, sha256 {}: adds the density ", part.surface.mesh().name, part.surface.mesh().sha256);
+    text += fmt::format("# part {}, sha256 {}: adds the density ", one_line(part.surface.mesh().name),
+                        part.surface.mesh().sha256);
     append_number(text, part.density);
     text += "\n";
   }
@@ -66,7 +66,7 @@ void write_csv(const ExpandResult& result, const Sink& sink) {
   facts.length_unit = length_unit(result.body);
   if (result.has_mass) facts.mass_unit = mass_unit(result.body);
   facts.provenance = provenance_of(result);
-  text += comment_lines(facts, {"lmax"}) + "# " + mesh_line(result.body.surface.mesh()) +
+  text += comment_lines(facts, {"lmax"}) + "# " + one_line(mesh_line(result.body.surface.mesh())) +
           "\n# device: " + device_line(result.device) + "\n";
   std::string columns = "l,m";
   if (result.has_mass) {

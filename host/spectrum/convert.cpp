@@ -84,7 +84,7 @@ void change_kind(const CoefficientSet& set, CoefficientSet& result, CoefficientK
   const double mass = mass_of(set);
   if (!(mass != 0))
     throw Error(Fault::bad_argument, "the body's mass is 0, and coefficients of the potential are divided by it; the "
-                                     "multipoles can be written to .json, .csv and .nc");
+                                     "multipoles can be written to .json and .csv, and by `cowgpu convert` to .nc");
   result.kind = kind;
   result.mass = mass;
   result.gravitational_constant = gravitational_constant(set);
