@@ -241,7 +241,7 @@ TEST_CASE("the paper's own tensors give its radiation, but for the errata", "[ra
   const SpinDown spin = spin_down(moment, power, 1, time);
   CHECK(double(spin.timescale) == Approx(1.94e49).epsilon(1e-3)); // printed 1.9e49
   CHECK(double(spin.deficit) == Approx(1.1206e-32).epsilon(1e-4));
-  CHECK(spin.omega.substr(0, 38) == "0." + std::string(31, '9') + "88794");
+  CHECK(decimal_difference("1", plain_decimal(spin.deficit, 5)) == "0." + std::string(31, '9') + "88794");
   // The printed digits: the timescale rounded to 1.9e49 s, years of 365 days.
   const SpinDown rounded = spin_down(2, 1 / 1.9e49L, 1, (13.787e9 - 12e6) * 365 * 86400.0);
   CHECK(double(rounded.timescale) == Approx(1.9e49).epsilon(1e-15));
@@ -262,7 +262,7 @@ TEST_CASE("the benchmark's exact moments give its radiation about each axis", "[
   CHECK(double(power) * 1e7 == Approx(5.43921954736e-41).epsilon(1e-11));
   CHECK(double(spin.energy) == Approx(106.528461293).epsilon(1e-11));
   CHECK(double(spin.timescale) == Approx(1.95852475461e49).epsilon(1e-11));
-  CHECK(spin.omega.substr(0, 38) == "0." + std::string(31, '9') + "88902");
+  CHECK(decimal_difference("1", plain_decimal(spin.deficit, 5)) == "0." + std::string(31, '9') + "88902");
 }
 
 TEST_CASE("no axis, no spin, no inertia and a negative time are refused", "[radiate]") {

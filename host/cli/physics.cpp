@@ -45,7 +45,7 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
   command->get_option("mesh")->description("Coefficients of its mass (FILE.json, .csv, .nc, .gfc, .sh), or a mesh: " +
                                            command->get_option("mesh")->get_description());
   command->get_option("mesh")->type_name("MESH|COEFFS");
-  const Solve solve = application.add(*command);
+  const Solve solve = application.add(*command, common);
   command
       ->add_option("--recipe", options->recipe,
                    "default, or paper: as Higher multipoles of the cow has it (benchmark, 2.39 m, 1 g/cm3), with its "
@@ -53,11 +53,10 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
   command->add_flag("--json", options->json, fmt::format("As JSON (data/schemas/cowgpu.{}.v1.json)", application.name));
-  add_run_options(*command, common);
   command->footer(application.footer);
   command->callback([=, &common] {
     if (options->paper()) take_paper_body(*command, options->body);
-    const physics::Findings findings = solve(*options, common);
+    const physics::Findings findings = solve(*options);
     check_stop(ConsoleMonitor(ProgressStyle::none));
     if (options->json)
       write_stdout(json_text(findings_json(findings, fmt::format("cowgpu.{}.v1", application.name), common.command)) +

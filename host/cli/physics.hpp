@@ -47,17 +47,18 @@ PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& op
 physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options);
 
 /// Computes, once the options are parsed.
-using Solve = std::function<physics::Findings(const PhysicsOptions&, const Common&)>;
+using Solve = std::function<physics::Findings(const PhysicsOptions&)>;
 
-/// A subcommand. `add` adds the options that are its own and returns what to do; the JSON is cowgpu.NAME.v1.
+/// A subcommand. `add` adds the options that are its own (of one that needs a device, add_common_options() too) and returns
+/// what to do; the JSON is cowgpu.NAME.v1.
 struct Application {
   const char* name;
   const char* summary;
   const char* footer;
-  Solve (*add)(CLI::App& command);
+  Solve (*add)(CLI::App& command, Common& common);
 };
 
-Solve add_tensors(CLI::App& command);
-Solve add_radiate(CLI::App& command);
+Solve add_tensors(CLI::App& command, Common& common);
+Solve add_radiate(CLI::App& command, Common& common);
 
 } // namespace cowgpu::cli

@@ -114,18 +114,12 @@ void check_wobble(const Eigen::Matrix3d& inertia, const Vec3& axis, std::vector<
                     angle));
 }
 
-Radiation radiation(PhysicsInput& input, const PhysicsOptions& common, const Options& options,
+Radiation radiation(const PhysicsInput& input, const PhysicsOptions& common, const Options& options,
                     std::vector<std::string>& notes) {
   Radiation r;
   r.axis = parse_axis(options.axis);
   r.omega = parse_omega(options, notes);
   r.time = parse_time(options);
-  if (input.body && common.body.origin != "com") {
-    if (!input.body->centre_of_mass.allFinite())
-      throw Error(Fault::bad_argument, "the body weighs nothing: it has no centre of mass to turn about");
-    input.body->origin = input.body->centre_of_mass;
-    notes.push_back("--origin does not matter: a free body turns about its centre of mass");
-  }
   const PlacedTensors placed = placed_tensors(input, common);
   r.tensors = about_centre(placed.tensors);
   r.unit_m = placed.unit_m;
@@ -227,8 +221,13 @@ Options paper_options(const Options& options) {
 }
 
 Findings solve(const PhysicsOptions& common, const Options& options) {
-  PhysicsInput input = load_input(common);
+  // A free body turns about its centre of mass, whatever point a mesh's moments are taken about.
+  PhysicsOptions own = common;
+  if (!is_coefficient_file(common.body.mesh)) own.body.origin = "com";
+  const PhysicsInput input = load_input(own);
   Findings found = findings_about(input, common);
+  if (own.body.origin != common.body.origin)
+    found.notes.push_back("--origin changes nothing: a free body turns about its centre of mass");
   const Radiation r = radiation(input, common, options, found.notes);
   const bool si = r.tensors.metric();
   const auto of_spin = [&](auto member) { return r.spin ? Value(double(*r.spin.*member)) : Value(); };
@@ -263,7 +262,7 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
 
 } // namespace
 
-Solve add_radiate(CLI::App& command) {
+Solve add_radiate(CLI::App& command, Common&) {
   const auto options = std::make_shared<Options>();
   command.add_option("--axis", options->axis, "Through the centre of mass: x, y, z or X,Y,Z in the body's axes")
       ->type_name("AXIS")
@@ -279,7 +278,7 @@ Solve add_radiate(CLI::App& command) {
   command.add_option("--age", options->age, "When its spin is asked for")->type_name("TIME")->capture_default_str();
   command.add_flag("--octupole", options->octupole,
                    "Also the mass octupole and the current quadrupole, from the mesh's exact third moments");
-  return [options](const PhysicsOptions& common, const Common&) {
+  return [options](const PhysicsOptions& common) {
     return solve(common, common.paper() ? paper_options(*options) : *options);
   };
 }

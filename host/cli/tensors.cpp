@@ -79,8 +79,8 @@ Findings solve(const PhysicsOptions& options) {
 
 } // namespace
 
-Solve add_tensors(CLI::App&) {
-  return [](const PhysicsOptions& options, const Common&) { return solve(options); };
+Solve add_tensors(CLI::App&, Common&) {
+  return solve;
 }
 
 } // namespace cowgpu::cli
