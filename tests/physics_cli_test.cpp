@@ -76,7 +76,8 @@ TEST_CASE("coefficients of the wrong kind are bad input, and a missing second mo
     std::ofstream file(potential);
     file << "product_type gravity_field\nmodelname plain\nearth_gravity_constant 3.986004415e14\nradius "
             "6378136.3\nmax_degree 2\nnorm "
-            "fully_normalized\nend_of_head\ngfc 0 0 1 0\ngfc 2 0 -4.84165e-4 0\ngfc 2 2 2.439e-6 -1.4e-6\n";
+            "fully_normalized\nend_of_head\ngfc 0 0 1 0\ngfc 1 0 0 0\ngfc 1 1 0 0\ngfc 2 0 -4.84165e-4 0\ngfc 2 1 0 "
+            "0\ngfc 2 2 2.439e-6 -1.4e-6\n";
   }
   refused({"tensors", potential}, 3, "second moment");
   const json waves = answer({"radiate", potential, "--axis", "z", "--period", "86164s"});
