@@ -60,6 +60,7 @@ struct CoefficientSet {
   std::string origin_kind;                ///< "centre of mass", "mesh", "given", or empty
   std::string length_unit, mass_unit;     ///< "m", "kg"; the two above; empty: not known
   std::optional<double> density, mass;
+  std::optional<double> second_moment;          ///< integral of density r^2 about `origin`, in the units above
   std::optional<double> gravitational_constant; ///< G that went into gm, in the units above and seconds
   std::optional<double> gm;                     ///< of potentials
   Provenance provenance;

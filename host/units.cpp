@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace cowgpu {
@@ -35,6 +36,24 @@ constexpr Unit units[] = {
     {Dimension::density, "g/l", 1},
     {Dimension::density, "t/m3", 1e3},
     {Dimension::density, "lb/ft3", 0.45359237 / (0.3048 * 0.3048 * 0.3048)},
+    {Dimension::time, "s", 1},
+    {Dimension::time, "ms", 1e-3},
+    {Dimension::time, "min", 60},
+    {Dimension::time, "h", 3600},
+    {Dimension::time, "d", 86400},
+    {Dimension::time, "yr", julian_year},
+    {Dimension::time, "kyr", 1e3 * julian_year},
+    {Dimension::time, "Myr", 1e6 * julian_year},
+    {Dimension::time, "Gyr", 1e9 * julian_year},
+    {Dimension::angular_rate, "rad/s", 1},
+    {Dimension::angular_rate, "deg/s", std::numbers::pi / 180},
+    {Dimension::angular_rate, "rpm", std::numbers::pi / 30},
+    {Dimension::angular_rate, "/s", 1},
+    {Dimension::angular_rate, "Hz", 1},
+    {Dimension::mass, "kg", 1},
+    {Dimension::mass, "g", 1e-3},
+    {Dimension::mass, "t", 1e3},
+    {Dimension::mass, "lb", 0.45359237},
 };
 
 std::string names(Dimension dimension) {
@@ -61,9 +80,9 @@ Measure parse_measure(std::string_view option, std::string_view text, Dimension 
   std::string unit;
   for (const char* c = next; c < end; ++c)
     if (*c != ' ' && *c != '^') unit += *c; // g/cm^3 as g/cm3
-  if (unit.empty()) return {value, false};
+  if (unit.empty()) return {value, false, {}};
   for (const Unit& known : units)
-    if (known.dimension == dimension && known.name == unit) return {value * known.in_si, true};
+    if (known.dimension == dimension && known.name == unit) return {value * known.in_si, true, known.name};
   throw refuse(fmt::format("no unit is called {}", unit));
 }
 

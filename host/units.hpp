@@ -5,17 +5,23 @@
 
 namespace cowgpu {
 
-/// What a quantity measures. Values are held in the SI unit: m, kg/m3.
-enum class Dimension { length, density };
+/// What a quantity measures. Values are held in the SI unit: m, kg/m3, s, rad/s, kg.
+enum class Dimension { length, density, time, angular_rate, mass };
+
+/// Seconds.
+inline constexpr double julian_year = 365.25 * 86400;
 
 /// A number and whether a unit came with it.
 struct Measure {
   double value = 0; ///< in the SI unit if has_unit, else as given
   bool has_unit = false;
+  std::string_view unit; ///< its name, as listed below; empty without one
 };
 
 /// Reads "2.7g/cm3", "2.7 g/cm^3", "300kg/m3", "12 km", "1e-3": a finite number and, next to it or after blanks, a unit or
-/// none. Units of length: nm um mm cm m km in ft au R_earth (6371 km); of density: kg/m3 g/cm3 g/m3 kg/l g/l t/m3 lb/ft3.
+/// none. Units of length: nm um mm cm m km in ft au R_earth (6371 km); of density: kg/m3 g/cm3 g/m3 kg/l g/l t/m3 lb/ft3;
+/// of time: s ms min h d yr kyr Myr Gyr, a year being Julian, 365.25 days of 86400 s; of angular rate: rad/s deg/s rpm, and
+/// /s and Hz, which are both 1 rad/s; of mass: kg g t lb.
 /// `option` opens the messages. Throws Error(bad_argument) with the units that there are.
 Measure parse_measure(std::string_view option, std::string_view text, Dimension dimension);
 

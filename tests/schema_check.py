@@ -246,6 +246,27 @@ with tempfile.TemporaryDirectory() as folder:
     refuses(coefficients, document, "a phase of no kind")
     found["fields"][0]["degrees"][0]["norm"] = -1
     refuses(difference, found, "a negative norm")
+tensors, radiate = load_schema("tensors"), load_schema("radiate")
+with tempfile.TemporaryDirectory() as folder:
+    written, table, again = (os.path.join(folder, name) for name in ("cow.json", "cow.csv", "cow.nc"))
+    expand("builtin:cow@1", "--lmax", "2", "--device", "cpu", "--json", "-o", written, "-o", table, "-o", again)
+    for arguments in (["builtin:cow@1", "--length", "2m"], ["builtin:box:1,2,3", "--origin", "mesh"], [written], [table], [again]):
+        found = output_of("tensors", *arguments, "--json")
+        jsonschema.validate(found, tensors)
+        assert found["input"]["kind"] == ("coefficients" if len(arguments) == 1 else "mesh")
+        assert abs(sum(found["quadrupole"][i][i] for i in range(3))) < 1e-15 * sum(found["principal_moments"])
+    for arguments in (
+        ["builtin:cow@1"],
+        ["builtin:cow@1", "--length", "2m", "--density", "1g/cm3", "--axis", "1,2,3", "--period", "1s", "--octupole"],
+        ["builtin:sphere@2", "--length", "2m"],
+        [written, "--length-unit", "1m", "--omega", "1Hz"],
+    ):
+        found = output_of("radiate", *arguments, "--json")
+        jsonschema.validate(found, radiate)
+        assert (found["power_W"] is None) is (len(arguments) == 1)
+        assert ("octupole_power_W" in found) is ("--octupole" in arguments)
+found["omega_after"] = "1e0"
+refuses(radiate, found, "an exponent among all digits")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 inspect = load_schema("inspect")
 with tempfile.TemporaryDirectory() as folder:
@@ -265,4 +286,4 @@ with tempfile.TemporaryDirectory() as folder:
     assert whole["inscribed_radius"] < whole["brillouin_radius"]
     whole["self_intersections"]["listed"] = [{"faces": [1], "kind": "crossing", "place": [0, 0, 0]}]
     refuses(inspect, whole, "a pair of one face")
-print("44 documents and 8 files passed")
+print("53 documents and 8 files passed")

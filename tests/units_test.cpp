@@ -24,6 +24,22 @@ TEST_CASE("quantities are numbers with or without a unit", "[units]") {
   CHECK(density("62.4lb/ft3") == Approx(999.55).epsilon(1e-5));
 }
 
+TEST_CASE("times, rates and masses have units too, and say which one it was", "[units]") {
+  const auto time = [](const char* text) { return parse_measure("--x", text, Dimension::time).value; };
+  CHECK(time("24h") == time("1d"));
+  CHECK(time("1yr") == 365.25 * 86400);
+  CHECK(time("13.787Gyr") == Approx(13.787e9 * julian_year).epsilon(1e-15));
+  CHECK(time("2min") == 120);
+  const auto rate = [](const char* text) { return parse_measure("--x", text, Dimension::angular_rate); };
+  CHECK(rate("1Hz").value == rate("1 rad/s").value);
+  CHECK(rate("1/s").value == 1);
+  CHECK(rate("1Hz").unit == "Hz");
+  CHECK(rate("2").unit.empty());
+  CHECK(rate("180deg/s").value == Approx(rate("30rpm").value).epsilon(1e-15));
+  CHECK(parse_measure("--x", "2t", Dimension::mass).value == 2000);
+  CHECK_THROWS_WITH(parse_measure("--x", "1 Myr", Dimension::mass), Contains("no unit is called Myr"));
+}
+
 TEST_CASE("quantities that mean nothing are refused with the units that there are", "[units]") {
   for (const char* text : {"", "m", "1 kg", "1kg/m3", "1e999m", "nan", "inf m", "1mm2", "1 M", "--1", "0x10", "1,5m"}) {
     INFO(text);

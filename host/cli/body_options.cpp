@@ -27,8 +27,32 @@ Eigen::Matrix3d parse_rotation(const std::string& text) {
   return rotation_matrix({turns[0], turns[1], turns[2]});
 }
 
+// --length, read before there is a mesh to measure.
+double parse_length(const BodyOptions& options) {
+  if (!options.length_unit.empty())
+    throw Error(Fault::bad_argument, "--length and --length-unit both say how large the body is; leave one out");
+  const Measure length = parse_measure("--length", options.length, Dimension::length);
+  if (!length.has_unit)
+    throw Error(Fault::bad_argument,
+                fmt::format("--length {0}: {0} of what? It is the body's length, such as 2.5m", options.length));
+  if (!(length.value > 0))
+    throw Error(Fault::bad_argument, fmt::format("--length {}: it must be above 0", options.length));
+  return length.value;
+}
+
+double metres_per_unit(const BodyOptions& options, const RawMesh& mesh) {
+  const double longest = bounding_box(mesh.vertices, mesh.faces).longest_side();
+  if (!(longest > 0) || !std::isfinite(longest))
+    throw Error(Fault::bad_argument, fmt::format("--length {}: {} has no length", options.length, mesh.name));
+  return parse_length(options) / longest;
+}
+
 Placement parse_placement(const BodyOptions& options) {
   Placement placement;
+  if (!options.length.empty()) {
+    parse_length(options);
+    placement.metric = true;
+  }
   if (!options.length_unit.empty()) {
     // "mm" is one of them.
     const bool bare = std::isalpha(static_cast<unsigned char>(options.length_unit.front())) != 0;
@@ -55,7 +79,7 @@ double parse_density(std::string_view option, std::string_view text, bool metric
     throw Error(
         Fault::bad_argument,
         fmt::format("{} {}: a density with a unit needs the mesh's: add --length-unit, the length that 1 in the "
-                    "mesh's file stands for, such as mm or 2.3m",
+                    "mesh's file stands for, such as mm or 2.3m, or --length",
                     option, text));
   return density.value;
 }
@@ -109,6 +133,11 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
       ->type_name("LENGTH")
       ->check(not_empty());
   command
+      .add_option("--length", options.length,
+                  "Instead of that: how long the body of MESH is, along the longest side of its box: 2.5m")
+      ->type_name("LENGTH")
+      ->check(not_empty());
+  command
       .add_option("--axes", options.axes,
                   "The mesh's axes that become x, y and z: x,-z,y for x' = x, y' = -z, z' = y (right-handed, exact)")
       ->type_name("A,B,C")
@@ -129,9 +158,12 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
 
 Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
   const OriginChoice origin = parse_origin(options.origin);
-  const Placement placement = parse_placement(options);
+  Placement placement = parse_placement(options);
   const double density = parse_density("--density", options.density, placement.metric);
-  ClosedSurface surface = load_placed(options.mesh, options.mending, placement);
+  RawMesh mesh = load_mended(options.mesh, options.mending);
+  if (!options.length.empty()) placement.scale = metres_per_unit(options, mesh);
+  place(mesh, placement);
+  ClosedSurface surface = ClosedSurface::from(std::move(mesh));
   notes.insert(notes.end(), surface.mesh().notes.begin(), surface.mesh().notes.end());
   std::vector<Part> parts;
   for (const std::string& text : options.parts) parts.push_back(load_part(text, placement));
@@ -141,6 +173,11 @@ Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
   Body body = make_body(std::move(surface), origin, density, std::move(parts));
   body.placement = placement;
   return body;
+}
+
+StatedUnits stated_units(const BodyOptions& options) {
+  const Placement placement = parse_placement(options);
+  return {placement.scale, parse_density("--density", options.density, placement.metric), placement.metric};
 }
 
 std::vector<std::string> input_files(const BodyOptions& options) {

@@ -21,7 +21,8 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 // Members of the document's top that are numbers, and those of its provenance.
-constexpr std::array number_words = {"reference_radius", "density", "mass", "gravitational_constant", "gm"};
+constexpr std::array number_words = {"reference_radius",       "density", "mass", "second_moment",
+                                     "gravitational_constant", "gm"};
 constexpr std::array provenance_words = {"program", "created", "command", "mesh", "mesh_sha256", "history"};
 constexpr std::array text_words = {"kind", "form", "normalisation", "phase", "length_unit", "mass_unit"};
 
@@ -110,6 +111,24 @@ CoefficientSet read_own(const std::string& name, const json& all) {
   return set;
 }
 
+// The trace of tensors.second_moment, where that is about the same point.
+std::optional<double> second_moment_in(const std::string& name, const json& all, const json& expansion) {
+  if (!all.contains("tensors") || !all.at("tensors").is_object() || !all.at("tensors").contains("second_moment"))
+    return std::nullopt;
+  const json& tensors = all.at("tensors");
+  if (tensors.contains("origin") && expansion.contains("origin") && tensors.at("origin") != expansion.at("origin"))
+    return std::nullopt;
+  const json& rows = tensors.at("second_moment");
+  double trace = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!rows.is_array() || rows.size() != 3 || !rows[i].is_array() || rows[i].size() != 3 || !rows[i][i].is_number())
+      throw Error(Fault::file_syntax,
+                  fmt::format("{}: the member 'tensors.second_moment' is not three rows of three numbers", name));
+    trace += rows[i][i].get<double>();
+  }
+  return trace;
+}
+
 // An expansion in the result of `cowgpu expand`.
 CoefficientSet read_result(const std::string& name, const json& all, const std::string& of) {
   const json& expansion = result_json::expansion(name, all, of);
@@ -131,6 +150,7 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
     metadata["reference_radius"] = {number_text(result_json::number(name, expansion, "reference_radius")), 0};
     if (expansion.contains("density"))
       metadata["density"] = {number_text(result_json::number(name, expansion, "density")), 0};
+    set.second_moment = second_moment_in(name, all, expansion);
   } else {
     for (std::size_t f = 0; f < set.names.size(); ++f)
       set.units[f] = set.names[f] == "f_dtheta" || set.names[f] == "f_dphi" ? "radian" : "length";
@@ -198,8 +218,8 @@ void write_json_coefficients(const CoefficientSet& set, AtomicFile& file) {
     if (key.starts_with("remark.")) remarks[key.substr(7)] = text;
     if (among(text_words, key)) head[key] = text;
   }
-  const std::array<std::optional<double>, 5> numbers = {set.reference_radius, set.density, set.mass,
-                                                        set.gravitational_constant, set.gm};
+  const std::array<std::optional<double>, 6> numbers = {
+      set.reference_radius, set.density, set.mass, set.second_moment, set.gravitational_constant, set.gm};
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i]) head[number_words[i]] = *numbers[i];
   if (set.origin) {

@@ -156,6 +156,7 @@ std::vector<std::pair<std::string, std::string>> metadata_of(const CoefficientSe
   add("mass_unit", set.mass_unit);
   add_number("density", set.density);
   add_number("mass", set.mass);
+  add_number("second_moment", set.second_moment);
   add_number("gravitational_constant", set.gravitational_constant);
   add_number("gm", set.gm);
   if (any(set.names)) add("fields", joined(set.names));
@@ -204,6 +205,7 @@ bool take_metadata(const Metadata& metadata, const std::string& file, Coefficien
                 fmt::format("{}: the file is of kind {} and says no reference_radius", file, name(set.kind)));
   read.number("density", set.density, false);
   read.number("mass", set.mass, false);
+  read.number("second_moment", set.second_moment, false);
   read.number("gravitational_constant", set.gravitational_constant, true);
   read.number("gm", set.gm, false);
   read.list("fields", set.names);

@@ -23,6 +23,24 @@ Mat second_moment(const ClosedSurface& surface, const Vec& origin) {
   return sum;
 }
 
+using Third = std::array<Mat, 3>;
+
+void add_third_moment(const ClosedSurface& surface, const Vec& origin, Extended density, Third& sum) {
+  for (const Face& face : surface.faces()) {
+    std::array<Vec, 3> corner;
+    for (std::size_t c = 0; c < 3; ++c) corner[c] = surface.vertices()[face[c]].cast<Extended>() - origin;
+    const Extended det = corner[0].dot(Vec(corner[1] - corner[0]).cross(Vec(corner[2] - corner[0])));
+    const Vec s = corner[0] + corner[1] + corner[2];
+    Mat p = Mat::Zero();
+    for (const Vec& a : corner) p += a * a.transpose();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      Mat term = s[i] * (s * s.transpose() + p) + s * p.row(i) + p.col(i) * s.transpose();
+      for (const Vec& a : corner) term += 2 * a[i] * a * a.transpose();
+      sum[std::size_t(i)] += density * det / 720 * term;
+    }
+  }
+}
+
 } // namespace
 
 Tensors tensors(const Body& body) {
@@ -31,6 +49,14 @@ Tensors tensors(const Body& body) {
   for (const Part& part : body.parts) sum += second_moment(part.surface, origin) * Extended(part.density);
   const Mat trace = Mat::Identity() * sum.trace();
   return {sum.cast<double>(), Mat(3 * sum - trace).cast<double>(), Mat(trace - sum).cast<double>()};
+}
+
+Tensor3 third_moment(const Body& body) {
+  Third sum = {Mat::Zero(), Mat::Zero(), Mat::Zero()};
+  const Vec origin = body.origin.cast<Extended>();
+  add_third_moment(body.surface, origin, body.density, sum);
+  for (const Part& part : body.parts) add_third_moment(part.surface, origin, part.density, sum);
+  return {Mat(sum[0]).cast<double>(), Mat(sum[1]).cast<double>(), Mat(sum[2]).cast<double>()};
 }
 
 } // namespace cowgpu

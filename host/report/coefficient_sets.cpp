@@ -40,6 +40,7 @@ CoefficientSet mass_set(const ExpandResult& result) {
   set.origin = q.origin;
   set.origin_kind = result.body.origin_kind;
   if (result.body.parts.empty()) set.density = q.density;
+  set.second_moment = result.tensors.second_moment.trace();
   set.length_unit = length_unit(result.body);
   set.mass_unit = mass_unit(result.body);
   set.provenance = provenance_of(result);

@@ -27,6 +27,8 @@ std::string mass_comments(const ExpandResult& result) {
   append_number(text, q.reference_radius);
   text += "\n# density ";
   append_number(text, q.density);
+  text += "\n# second_moment ";
+  append_number(text, result.tensors.second_moment.trace());
   text += "\n";
   for (const Part& part : result.body.parts) {
     text += fmt::format("# part {}, sha256 {}: adds the density ", one_line(part.surface.mesh().name),

@@ -1,0 +1,146 @@
+#include "host/cli/physics.hpp"
+
+#include "host/error.hpp"
+#include "host/io/coefficient_file.hpp"
+#include "host/physics/paper.hpp"
+#include "host/report/findings_report.hpp"
+#include "host/report/json_parts.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+namespace cowgpu::cli {
+namespace {
+
+// A new application is a row here, a file in host/physics, one in host/cli and a schema.
+constexpr std::array applications = {
+    Application{"tensors", "Quadrupole, inertia, second moment and principal axes of a body, or from its multipoles",
+                "Examples: cowgpu tensors benchmark\n"
+                "          cowgpu expand benchmark --lmax 2 -o cow.json && cowgpu tensors cow.json --json\n"
+                "          cowgpu tensors benchmark --recipe paper",
+                add_tensors},
+    Application{"radiate", "Gravitational waves from a body that turns: their power, and how long until it has stopped",
+                "Examples: cowgpu radiate benchmark --length 2.5m --density 1g/cm3 --axis y --omega 1rad/s\n"
+                "          cowgpu radiate benchmark --recipe paper",
+                add_radiate},
+};
+
+// The paper's body, but for what the user says.
+void take_paper_body(CLI::App& command, BodyOptions& body) {
+  if (command.get_option("mesh")->count() == 0) body.mesh = physics::paper::mesh;
+  if (is_coefficient_file(body.mesh))
+    throw Error(Fault::bad_argument, "--recipe paper is about the paper's mesh, and this is a file of coefficients");
+  if (body.length_unit.empty() && body.length.empty()) body.length_unit = physics::paper::length_unit;
+  if (command.get_option("--density")->count() == 0) body.density = physics::paper::density;
+}
+
+void add_application(CLI::App& app, Common& common, const Application& application) {
+  CLI::App* command = app.add_subcommand(application.name, application.summary);
+  const auto options = std::make_shared<PhysicsOptions>();
+  add_body_options(*command, options->body);
+  command->get_option("mesh")->description("Coefficients of its mass (FILE.json, .csv, .nc, .gfc, .sh), or a mesh: " +
+                                           command->get_option("mesh")->get_description());
+  command->get_option("mesh")->type_name("MESH|COEFFS");
+  const Solve solve = application.add(*command, common);
+  command
+      ->add_option("--recipe", options->recipe,
+                   "default, or paper: as Higher multipoles of the cow has it (benchmark, 2.39 m, 1 g/cm3), with its "
+                   "numbers beside ours")
+      ->check(CLI::IsMember({"default", "paper"}))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, fmt::format("As JSON (data/schemas/cowgpu.{}.v1.json)", application.name));
+  command->footer(application.footer);
+  command->callback([=, &common] {
+    if (options->paper()) take_paper_body(*command, options->body);
+    const physics::Findings findings = solve(*options);
+    check_stop(ConsoleMonitor(ProgressStyle::none));
+    if (options->json)
+      write_stdout(json_text(findings_json(findings, fmt::format("cowgpu.{}.v1", application.name), common.command)) +
+                   "\n");
+    else
+      write_findings(findings, write_stdout);
+  });
+}
+
+} // namespace
+
+bool is_coefficient_file(const std::string& input) {
+  const std::string suffix = std::filesystem::path(input).extension();
+  constexpr std::array suffixes = {".json", ".csv", ".nc", ".gfc", ".sh"};
+  return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
+}
+
+PhysicsInput load_input(const PhysicsOptions& options) {
+  const BodyOptions& body = options.body;
+  PhysicsInput input;
+  if (!is_coefficient_file(body.mesh)) {
+    input.body = load_body(body, input.notes);
+    return input;
+  }
+  stated_units(body);
+  for (const auto& [given, option] :
+       {std::pair(body.origin != "com", "--origin"), std::pair(!body.length.empty(), "--length"),
+        std::pair(!body.axes.empty(), "--axes"), std::pair(!body.rotate.empty(), "--rotate"),
+        std::pair(!body.parts.empty(), "--part")})
+    if (given)
+      throw Error(Fault::bad_argument, fmt::format("{} places a mesh, and {} holds coefficients; `cowgpu convert "
+                                                   "--rotate` turns those, and --length-unit says their unit",
+                                                   option, body.mesh));
+  input.coefficients = read_coefficient_set(body.mesh);
+  input.notes = input.coefficients->notes;
+  return input;
+}
+
+PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& options) {
+  PlacedTensors placed;
+  if (input.body) {
+    placed.tensors = physics::mass_tensors(*input.body);
+    const double metres = input.body->placement.scale;
+    if (!input.body->placement.metric) return placed;
+    placed.unit_m = metres;
+    placed.unit_kg = input.body->density * metres * metres * metres;
+    return placed;
+  }
+  const StatedUnits stated = stated_units(options.body);
+  placed.tensors = physics::mass_tensors(*input.coefficients);
+  if (placed.tensors.metric()) {
+    if (stated.metric)
+      throw Error(Fault::bad_argument,
+                  fmt::format("--length-unit: {} is in metres and kilograms already", options.body.mesh));
+    placed.unit_m = placed.unit_kg = 1;
+    return placed;
+  }
+  if (!stated.metric) return placed;
+  placed.unit_m = stated.metres;
+  placed.unit_kg =
+      stated.density / input.coefficients->density.value_or(1) * stated.metres * stated.metres * stated.metres;
+  placed.tensors = physics::in_si(placed.tensors, *placed.unit_m, *placed.unit_kg);
+  return placed;
+}
+
+physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options) {
+  physics::Findings findings;
+  findings.notes = input.notes;
+  if (input.body) {
+    const RawMesh& mesh = input.body->surface.mesh();
+    findings.title = mesh_line(mesh);
+    findings.input_kind = "mesh";
+    findings.input_name = mesh.name;
+    findings.input_sha256 = mesh.sha256;
+  } else {
+    findings.title = fmt::format("coefficients {}, to degree {}", options.body.mesh, input.coefficients->lmax);
+    findings.input_kind = "coefficients";
+    findings.input_name = options.body.mesh;
+  }
+  return findings;
+}
+
+void add_physics(CLI::App& app, Common& common) {
+  for (const Application& application : applications) add_application(app, common, application);
+}
+
+} // namespace cowgpu::cli

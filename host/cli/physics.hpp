@@ -1,0 +1,64 @@
+// The applications of the multipoles: one row of a table each makes subcommand, help, JSON and report.
+#pragma once
+
+#include "host/cli/body_options.hpp"
+#include "host/cli/commands.hpp"
+#include "host/coefficient_set.hpp"
+#include "host/physics/findings.hpp"
+#include "host/physics/tensors.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace cowgpu::cli {
+
+/// What every application has.
+struct PhysicsOptions {
+  BodyOptions body; ///< body.mesh is MESH|COEFFS
+  std::string recipe = "default";
+  bool json = false;
+  bool paper() const { return recipe == "paper"; }
+};
+
+/// A mesh with its parts, or a file of coefficients: one of both.
+struct PhysicsInput {
+  std::optional<Body> body;
+  std::optional<CoefficientSet> coefficients;
+  std::vector<std::string> notes;
+};
+
+/// Whether an input names a file of coefficients, by its suffix: .json, .csv, .nc, .gfc, .sh.
+bool is_coefficient_file(const std::string& input);
+
+/// Reads either. Options that place a mesh are refused for coefficients: Error(bad_argument). Throws what load_body() and
+/// read_coefficient_set() throw.
+PhysicsInput load_input(const PhysicsOptions& options);
+
+/// An input's tensors, about its origin; in `unit_m` and `unit_kg` what the unit of length of the mesh (or the file), and its
+/// cube times the density, are in SI. Without --length-unit and --length neither is known.
+struct PlacedTensors {
+  physics::MassTensors tensors;
+  std::optional<double> unit_m, unit_kg;
+};
+PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& options);
+
+/// Name, hash and notes of an input, for the head of a report.
+physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options);
+
+/// Computes, once the options are parsed.
+using Solve = std::function<physics::Findings(const PhysicsOptions&)>;
+
+/// A subcommand. `add` adds the options that are its own (of one that needs a device, add_common_options() too) and returns
+/// what to do; the JSON is cowgpu.NAME.v1.
+struct Application {
+  const char* name;
+  const char* summary;
+  const char* footer;
+  Solve (*add)(CLI::App& command, Common& common);
+};
+
+Solve add_tensors(CLI::App& command, Common& common);
+Solve add_radiate(CLI::App& command, Common& common);
+
+} // namespace cowgpu::cli

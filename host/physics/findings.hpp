@@ -1,0 +1,40 @@
+// What an application of the multipoles found, in one form for the screen and for JSON.
+#pragma once
+
+#include "host/types.hpp"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace cowgpu::physics {
+
+/// monostate: not known, null in JSON. A matrix is a list of rows.
+using Value = std::variant<std::monostate, double, std::string, bool, Vec3, Eigen::Matrix3d>;
+
+/// A result: a member of the JSON document and a line on the screen.
+struct Finding {
+  std::string key;   ///< in JSON: "power_W"
+  std::string label; ///< on the screen: "radiated power"
+  Value value;
+  std::string unit = {}; ///< "W"; in JSON the member `units` has it under the same key
+};
+
+/// A number that a paper prints, beside ours.
+struct Comparison {
+  std::string quantity;
+  double ours = 0, printed = 0;
+  std::string why = {}; ///< they differ: a sentence, or empty where it is the last printed digit
+};
+
+struct Findings {
+  std::string title;
+  std::string input_kind, input_name, input_sha256; ///< "mesh" or "coefficients"; a mesh's hash, else empty
+  std::vector<Finding> rows;
+  std::vector<Comparison> paper; ///< "Higher multipoles of the cow"; empty unless asked for
+  std::vector<std::string> notes;
+};
+
+} // namespace cowgpu::physics

@@ -1,0 +1,22 @@
+// What an application of the multipoles found, on the screen and as JSON.
+#pragma once
+
+#include "host/physics/findings.hpp"
+#include "host/report/result.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace cowgpu {
+
+/// The document `schema` ("cowgpu.tensors.v1"): program, command, created, input, notes, each row as a member, `units` and,
+/// where there are any, `paper`.
+nlohmann::ordered_json findings_json(const physics::Findings& findings, const std::string& schema,
+                                     const std::vector<std::string>& command);
+
+/// Title, notes, a line or three for each row, and a table of the paper's numbers.
+void write_findings(const physics::Findings& findings, const Sink& sink);
+
+} // namespace cowgpu
