@@ -133,7 +133,7 @@ TEST_CASE("a body that is symmetric about its axis spins for ever, and one witho
   CHECK(std::abs(plain["octupole_square_over_omega8"].get<double>()) < 1e-25);
 }
 
-TEST_CASE("--recipe paper shows the paper's numbers beside ours", "[physics][cli][paper]") {
+TEST_CASE("the paper's recipe shows the paper's numbers beside ours", "[physics][cli][paper]") {
   if (!benchmark_cow()) return skip_without_cow();
   const json waves = answer({"radiate", "--recipe", "paper"});
   CHECK_THAT(waves["omega_after"].get<std::string>(), Catch::StartsWith("0.9999999999999999999999999999999889022"));
