@@ -34,17 +34,17 @@ seeds() {
 }
 
 run() {
-  local reader=$1 work=$build/work/$1 suffix file log=$build/$1.log
-  rm -rf -- "$work"
-  mkdir -p "$work/seeds"
+  local reader=$1 inputs=$build/inputs/$1 suffix file log=$build/$1.log
+  rm -rf -- "$inputs"
+  mkdir -p "$inputs/seeds"
   for suffix in $(seeds "$reader"); do
     for file in tests/corpus/accepted/*."$suffix" tests/corpus/refused/*."$suffix" "tests/fuzz/seeds/$reader"/*; do
-      [[ -f $file ]] && cp -- "$file" "$work/seeds/"
+      [[ -f $file ]] && cp -- "$file" "$inputs/seeds/"
     done
   done
   # Leaks are looked for; a byte of input may cost time and memory, but within bounds.
   if "$build/tests/fuzz/fuzz_$reader" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=256 \
-    -max_len=8192 -seed=1 -print_final_stats=1 -artifact_prefix="$found/$reader-" "$work/seeds" >"$log" 2>&1; then
+    -max_len=8192 -seed=1 -print_final_stats=1 -artifact_prefix="$found/$reader-" "$inputs/seeds" >"$log" 2>&1; then
     printf '%s: %s runs in %s s, nothing found\n' "$reader" \
       "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" "$seconds"
   else

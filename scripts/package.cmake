@@ -34,7 +34,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/meshes ${PROJECT_SOURCE_DIR}/data/s
 install(TARGETS libcowgpu EXPORT cowgpu-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 # Headers of what a caller uses; those of single paths and of third libraries stay inside.
-foreach(folder "" mesh/ map/ spectrum/ flow/ io/)
+foreach(folder "" mesh/ map/ spectrum/ flow/ io/ physics/)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${folder}*.hpp)
   list(FILTER headers EXCLUDE REGEX "/(flush_denormals|netcdf|quarter_turn|result_json|tinygltf|version)\\.hpp$")
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/${folder} COMPONENT development)

@@ -1,3 +1,4 @@
+#include "tests/support/fields.hpp"
 #include "tests/support/run_program.hpp"
 
 #include <catch2/catch.hpp>
@@ -41,6 +42,7 @@ TEST_CASE("body options that mean nothing are usage errors", "[body][cli]") {
     CHECK_THAT(run.err, Contains(word));
   };
   refused({"builtin:box", "--density", "300kg/m3"}, "--length-unit");
+  refused({"builtin:box", "--length-unit", ""}, "the value is empty");
   refused({"builtin:box", "--density", "water"}, "kg/m3");
   refused({"builtin:box", "--density", "0"}, "density");
   refused({"builtin:box", "--length-unit", "3"}, "3 of what");
@@ -78,4 +80,46 @@ TEST_CASE("a quarter turn about x is the same by axes and by Euler angles", "[bo
   CHECK(axes == leading({"--rotate", "-90,90,90"}));
   CHECK(axes != leading({}));
   CHECK(leading({"--axes", "x,-z,y", "--rotate", "-90,-90,90"}) == leading({}));
+}
+
+TEST_CASE("whole turns beyond the first are left out exactly", "[body][cli]") {
+  const ProgramRun once = expand({"builtin:box:1,2,3", "--rotate", "30,0,0"});
+  const ProgramRun often = expand({"builtin:box:1,2,3", "--rotate", "36000000000030,0,0"});
+  REQUIRE(often.exit_code == 0);
+  CHECK(once.out.substr(once.out.find("leading")) == often.out.substr(often.out.find("leading")));
+}
+
+TEST_CASE("a map from a file is turned with the body: the same coefficients as a map made anew", "[body][cli]") {
+  const TemporaryFolder folder;
+  const std::string map = folder / "map.ply", made = folder / "made.csv", read = folder / "read.csv";
+  REQUIRE(run_program({"map", "builtin:cow@1", "-q", "-o", map}).exit_code == 0);
+  const std::vector<std::string> turned = {"builtin:cow@1", "--of", "stretch", "--rotate", "20,30,40", "-q"};
+  auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), turned.begin(), turned.end());
+    return expand(more).exit_code;
+  };
+  REQUIRE(with({"-o", made}) == 0);
+  REQUIRE(with({"--map", map, "-o", read}) == 0);
+  const ProgramRun difference = run_program({"diff", made, read, "--of", "stretch", "--tolerance", "1e-6"});
+  INFO(difference.out << difference.err);
+  CHECK(difference.exit_code == 0);
+}
+
+TEST_CASE("files of coefficients that were cut within a number are refused", "[body][cli]") {
+  const TemporaryFolder folder;
+  for (const char* name : {"cow.gfc", "cow.sh", "cow.csv"}) {
+    INFO(name);
+    const std::string path = folder / name;
+    REQUIRE(expand({"builtin:cow@1", "-q", "-o", path}).exit_code == 0);
+    std::string text = read_text(path);
+    text.resize(text.size() - 8); // within the exponent's number: what is left is a number too
+    write_text(path, text);
+    const ProgramRun run = run_program({"convert", path, folder / "out.json"});
+    CHECK(run.exit_code == 3);
+    CHECK_THAT(run.err, Contains("file-truncated") || Contains("file-syntax"));
+  }
+  write_text(folder / "deep.json", std::string(100000, '['));
+  const ProgramRun deep = run_program({"convert", folder / "deep.json", folder / "out.csv"});
+  CHECK(deep.exit_code == 3);
+  CHECK_THAT(deep.err, Contains("nested"));
 }

@@ -1,3 +1,4 @@
+#include "tests/support/fields.hpp"
 #include "tests/support/run_program.hpp"
 
 #include <catch2/catch.hpp>
@@ -13,17 +14,6 @@ using Catch::Contains;
 using Catch::StartsWith;
 
 namespace {
-
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
 
 std::size_t files_in(const std::string& folder) {
   const auto all = std::filesystem::directory_iterator(folder);
@@ -340,4 +330,19 @@ TEST_CASE("inspect tells what a mesh is fit for", "[cli]") {
   const ProgramRun open = run_program({"inspect", folder / "open.off", "--json"});
   CHECK(open.exit_code == 0);
   CHECK_THAT(open.out, Contains("mesh-open") && Contains("\"open_edges\": 3"));
+}
+
+TEST_CASE("inspect calls a body fit for maps only where map takes it", "[cli]") {
+  const std::string corpus = std::string(COWGPU_SOURCE) + "/tests/corpus/accepted/";
+  for (const char* name : {"genus-one.off", "two-shells.off"}) {
+    const ProgramRun run = run_program({"inspect", corpus + name});
+    CHECK(run.exit_code == 0);
+    CHECK_THAT(run.out, Contains("fit for sphere maps      no [map-topology]"));
+  }
+}
+
+TEST_CASE("a command that does not exist is named", "[cli]") {
+  const ProgramRun run = run_program({"frob"});
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.err, Contains("'frob'") && Contains("expand"));
 }

@@ -4,7 +4,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -12,22 +11,6 @@
 using namespace cowgpu::test;
 using Catch::Contains;
 namespace fs = std::filesystem;
-
-namespace {
-
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = fs::temp_directory_path() / "cowgpu-XXXXXX";
-    path = mkdtemp(name.data());
-  }
-  ~Folder() {
-    std::error_code none;
-    fs::remove_all(path, none);
-  }
-};
-
-} // namespace
 
 TEST_CASE("the catalogue names each body once, with a hash of its own", "[meshes]") {
   std::set<std::string> names, hashes, files;
@@ -68,28 +51,30 @@ TEST_CASE("meshes add checks a file's hash and copies it to where its name finds
     WARN("SKIPPED: triceratops of Debian's libcgal-demo is not here; ./check fetches it");
     return;
   }
-  const Folder folder;
-  const std::string renamed = folder.path / "some.off", own = folder.path / "own";
+  const TemporaryFolder folder;
+  const std::string renamed = folder / "some.off", own = folder / "own";
   fs::copy_file(*found, renamed);
-  ::setenv("COWGPU_MESHES_BEFORE", std::getenv("COWGPU_MESHES") ? std::getenv("COWGPU_MESHES") : "", 1);
-  ::setenv("COWGPU_MESHES", own.c_str(), 1);
-  const ProgramRun added = run_program({"meshes", "add", renamed});
-  const ProgramRun listed = run_program({"meshes"});
+  ProgramOptions options;
+  options.environment["COWGPU_MESHES"] = own;
+  const ProgramRun added = run_program({"meshes", "add", renamed}, options);
+  const ProgramRun listed = run_program({"meshes"}, options);
   std::ofstream(renamed, std::ios::app) << "# changed\n";
-  const ProgramRun changed = run_program({"meshes", "add", renamed});
-  // A file of another hash in its place is not taken for it.
-  fs::copy_file(renamed, fs::path(own) / "cow.off");
-  const ProgramRun other = run_program({"inspect", "benchmark"});
-  ::setenv("COWGPU_MESHES", std::getenv("COWGPU_MESHES_BEFORE"), 1);
+  const ProgramRun changed = run_program({"meshes", "add", renamed}, options);
+  // A file of another hash in its place is not taken for it, and not written over.
+  const std::string place = own + "/cgal/triceratops.off";
+  fs::copy_file(renamed, place, fs::copy_options::overwrite_existing);
+  const ProgramRun in_the_way = run_program({"meshes", "add", *found}, options);
 
   INFO(added.err);
   CHECK(added.exit_code == 0);
   CHECK_THAT(added.out, Contains("cgal:triceratops"));
-  CHECK(fs::exists(fs::path(own) / "cgal" / "triceratops.off"));
-  CHECK_THAT(listed.out, Contains(own + "/cgal/triceratops.off"));
+  CHECK(fs::exists(place));
+  CHECK_THAT(listed.out, Contains(place));
   CHECK(changed.exit_code == 3);
   CHECK_THAT(changed.err, Contains("file-format") && Contains("no file of its SHA-256"));
-  if (other.exit_code != 0) CHECK_THAT(other.err, Contains("is another mesh") && Contains("mesh-missing"));
+  CHECK(in_the_way.exit_code == 5);
+  CHECK_THAT(in_the_way.err, Contains("is another mesh") && Contains("left as it is"));
+  CHECK(fs::file_size(place) == fs::file_size(renamed));
 }
 
 TEST_CASE("a name that the catalogue lacks is no path", "[meshes][cli]") {

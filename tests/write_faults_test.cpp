@@ -1,4 +1,5 @@
 // Files while the program is killed, and on a disk that is full: the old one or the new one, never a part.
+#include "tests/support/fields.hpp"
 #include "tests/support/run_program.hpp"
 
 #include <catch2/catch.hpp>
@@ -19,13 +20,6 @@ using namespace cowgpu::test;
 using Catch::Contains;
 
 namespace {
-
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 // Runs the program and kills it after that many milliseconds; whether it was killed before its end.
 bool killed(const std::vector<std::string>& arguments, int milliseconds) {

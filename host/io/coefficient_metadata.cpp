@@ -123,12 +123,6 @@ private:
 
 } // namespace
 
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  return text;
-}
-
 std::string place(const std::string& file, std::size_t line) {
   return line ? fmt::format("{}:{}", file, line) : file;
 }

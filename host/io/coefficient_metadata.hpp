@@ -40,7 +40,4 @@ bool take_metadata(const Metadata& metadata, const std::string& file, Coefficien
 /// "FILE:LINE", or "FILE" where there is no line.
 std::string place(const std::string& file, std::size_t line);
 
-/// The text without line ends and other control characters, for comments.
-std::string one_line(std::string text);
-
 } // namespace cowgpu

@@ -18,12 +18,6 @@ static_assert(std::endian::native == std::endian::little, "the writer and the re
 constexpr std::uint64_t most_written = 0x7fffffff; // indices are ints
 constexpr std::size_t face_bytes = 1 + 3 * sizeof(std::uint32_t);
 
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  return text;
-}
-
 template <class T>
 void append(std::string& bytes, T value) {
   char raw[sizeof(T)];

@@ -1,5 +1,6 @@
 #include "host/io/coefficient_metadata.hpp"
 #include "host/io/number.hpp"
+#include "host/io/shown.hpp"
 #include "host/report/coefficient_sets.hpp"
 #include "host/report/result.hpp"
 #include "host/version.hpp"
