@@ -27,9 +27,10 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/flow", {"host", "host/mesh", "host/map", "host/spectrum"}},
     {"host/physics", {"host", "host/mesh", "host/io", "host/spectrum"}},
     {"host/report", {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics"}},
+    {"host/reproduce", {"host", "host/io", "host/spectrum", "host/physics", "host/report"}},
     {"host/cli",
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/report",
-      "host/plan"}},
+      "host/plan", "host/reproduce"}},
 };
 
 struct Include {

@@ -268,6 +268,15 @@ with tempfile.TemporaryDirectory() as folder:
 found["omega_after"] = "1e0"
 refuses(radiate, found, "an exponent among all digits")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
+reproduce = load_schema("reproduce")
+with tempfile.TemporaryDirectory() as folder:
+    subprocess.run([program, "reproduce", "-o", folder, "--mesh", "builtin:box", "--only", "mass,tensors"], capture_output=True, check=True)
+    with open(os.path.join(folder, "reproduce.json"), encoding="utf-8") as file:
+        found = json.load(file)
+    jsonschema.validate(found, reproduce)
+    assert sum(found["counts"].values()) == len(found["rows"])
+    found["rows"][0]["verdict"] = "probably"
+    refuses(reproduce, found, "a verdict of no kind")
 inspect = load_schema("inspect")
 with tempfile.TemporaryDirectory() as folder:
     path, mended = os.path.join(folder, "open.off"), os.path.join(folder, "mended.ply")
@@ -286,4 +295,4 @@ with tempfile.TemporaryDirectory() as folder:
     assert whole["inscribed_radius"] < whole["brillouin_radius"]
     whole["self_intersections"]["listed"] = [{"faces": [1], "kind": "crossing", "place": [0, 0, 0]}]
     refuses(inspect, whole, "a pair of one face")
-print("53 documents and 8 files passed")
+print("53 documents and 9 files passed")

@@ -1,0 +1,75 @@
+#include "host/cli/child.hpp"
+
+#include "host/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace cowgpu::cli {
+namespace {
+
+// What the child does between fork and exec.
+struct Actions {
+  posix_spawn_file_actions_t actions;
+  Actions() { posix_spawn_file_actions_init(&actions); }
+  ~Actions() { posix_spawn_file_actions_destroy(&actions); }
+  Actions(const Actions&) = delete;
+  Actions& operator=(const Actions&) = delete;
+
+  void write_to(int descriptor, const std::filesystem::path& file) {
+    posix_spawn_file_actions_addopen(&actions, descriptor, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  }
+};
+
+int exit_status(int status) {
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+} // namespace
+
+int run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                const std::string& output, const std::string& errors, const Monitor& monitor,
+                const std::function<void()>& waiting) {
+  std::vector<std::string> words = {"cowgpu"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  Actions actions;
+  posix_spawn_file_actions_addchdir_np(&actions.actions, folder.c_str());
+  posix_spawn_file_actions_addopen(&actions.actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  actions.write_to(STDOUT_FILENO, output);
+  actions.write_to(STDERR_FILENO, errors);
+  pid_t process = 0;
+  if (const int reason = posix_spawn(&process, "/proc/self/exe", &actions.actions, nullptr, argv.data(), environ))
+    throw Error(Fault::cannot_write, fmt::format("`cowgpu {}` could not be started in {}: {}", arguments[0],
+                                                 folder.string(), std::strerror(reason)));
+  bool told = false;
+  for (;;) {
+    int status = 0;
+    const pid_t ended = waitpid(process, &status, WNOHANG);
+    if (ended == process) {
+      check_stop(monitor);
+      return exit_status(status);
+    }
+    if (ended < 0 && errno != EINTR)
+      throw Error(Fault::cannot_write, fmt::format("`cowgpu {}` was lost: {}", arguments[0], std::strerror(errno)));
+    if (monitor.stopped() && !told) {
+      kill(process, SIGTERM);
+      told = true;
+    }
+    waiting();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+} // namespace cowgpu::cli

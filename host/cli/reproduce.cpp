@@ -1,0 +1,231 @@
+#include "host/cli/child.hpp"
+#include "host/cli/commands.hpp"
+
+#include "host/clock.hpp"
+#include "host/error.hpp"
+#include "host/io/atomic_file.hpp"
+#include "host/io/file.hpp"
+#include "host/io/mesh_source.hpp"
+#include "host/io/sha256.hpp"
+#include "host/report/json_parts.hpp"
+#include "host/reproduce/report.hpp"
+#include "host/reproduce/tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace cowgpu::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace reproduce;
+
+constexpr const char* stand_in = "builtin:cow";
+
+struct Options {
+  std::string folder, mesh;
+  std::vector<std::string> only;
+  bool fresh = false;
+};
+
+// One run at a time in a folder.
+class Lock {
+public:
+  explicit Lock(const fs::path& file) : fd_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    if (fd_ < 0) throw Error(Fault::cannot_write, fmt::format("{}: {}", file.string(), std::strerror(errno)));
+    if (flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
+    close(fd_);
+    throw Error(Fault::bad_argument, fmt::format("another `cowgpu reproduce` is at work in {}; wait for it, or take "
+                                                 "another folder",
+                                                 file.parent_path().parent_path().string()));
+  }
+  ~Lock() { close(fd_); }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+private:
+  int fd_;
+};
+
+void make_folder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw Error(Fault::cannot_write, fmt::format("{}: {}", folder.string(), failed.message()));
+}
+
+// The stages run in the folder of the results, and find the same meshes there.
+void pin_mesh_folder() {
+  if (const char* folder = std::getenv("COWGPU_MESHES"); folder && *folder)
+    setenv("COWGPU_MESHES", fs::absolute(folder).c_str(), 1);
+}
+
+// What a stage said last, for one that failed.
+std::string last_words(const fs::path& log) {
+  std::string text = read_file(log);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  const std::size_t line = text.rfind('\n');
+  return line == std::string::npos ? text : text.substr(line + 1);
+}
+
+struct Run {
+  const Options& options;
+  Common& common;
+  ConsoleMonitor& monitor;
+  std::string program;        // its hash
+  double all = 0, before = 0; // seconds that stages are expected to take
+};
+
+Ran run_stage(const Stage& stage, State& state, Run& run) {
+  const fs::path folder = run.options.folder;
+  const std::string key = stage_key(stage, run.program);
+  Ran ran{stage, 0, 0, false, {}};
+  if (const auto done = run.options.fresh ? std::nullopt : state.finished(stage, key)) {
+    ran.seconds = done->seconds;
+    return ran;
+  }
+  ran.again = true;
+  const std::string part = stage.output + ".part", log = "data/" + stage.name + ".log";
+  const auto start = Clock::now();
+  ran.exit_code = run_program(stage.arguments, folder, part, log, run.monitor, [&] {
+    const double within = std::min(seconds_since(start), stage.seconds);
+    run.monitor.progress("reproduce", (run.before + within) / run.all);
+  });
+  ran.seconds = seconds_since(start);
+  if (ran.exit_code != 0) {
+    ran.message = last_words(folder / log);
+    return ran;
+  }
+  fs::rename(folder / part, folder / stage.output);
+  state.finish(stage, key, ran.seconds);
+  return ran;
+}
+
+Documents documents(const Reproduction& all, const fs::path& folder) {
+  Documents read;
+  for (const Ran& ran : all.stages) {
+    if (ran.exit_code != 0) continue;
+    std::vector<std::string> files = ran.stage.files;
+    files.push_back(ran.stage.output);
+    for (const std::string& file : files)
+      if (file.ends_with(".json")) read[fs::path(file).filename()] = nlohmann::json::parse(read_file(folder / file));
+  }
+  return read;
+}
+
+void write_whole(const fs::path& file, const std::string& text) {
+  AtomicFile out(file);
+  out.write(text);
+  out.commit();
+}
+
+void keep_only(const std::vector<std::string>& wanted, std::vector<Stage>& stages) {
+  std::string there;
+  for (const Stage& stage : stages) there += (there.empty() ? "" : ", ") + stage.name;
+  for (const std::string& name : wanted)
+    if (std::none_of(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.name == name; }))
+      throw Error(Fault::bad_argument, fmt::format("--only {}: there is no such stage; there are {}", name, there));
+  std::erase_if(
+      stages, [&](const Stage& stage) { return std::find(wanted.begin(), wanted.end(), stage.name) == wanted.end(); });
+}
+
+// The mesh to take, and whether it is the paper's.
+RawMesh find_mesh(const Options& options, std::string& name) {
+  name = options.mesh.empty() ? "benchmark" : options.mesh;
+  try {
+    return load_mesh(name);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::mesh_missing || !options.mesh.empty()) throw;
+    say(fmt::format("cowgpu: {}\ncowgpu: THE PAPER'S COW IS NOT HERE: everything is done with {} instead, and nothing "
+                    "is compared\n",
+                    error.what(), stand_in));
+  }
+  name = stand_in;
+  return load_mesh(name);
+}
+
+void reproduce_all(const Options& options, Common& common) {
+  Reproduction all;
+  all.command = common.command;
+  all.created = utc_now();
+  pin_mesh_folder();
+  const RawMesh mesh = find_mesh(options, all.mesh);
+  if (fs::exists(all.mesh)) all.mesh = fs::absolute(all.mesh);
+  all.mesh_hash = mesh.sha256;
+  all.papers_mesh = mesh.sha256 == benchmark_sha256;
+  const fs::path folder = options.folder;
+  make_folder(folder / "data");
+  make_folder(folder / "figures");
+  const Lock lock(folder / "data" / ".lock");
+  Plan plan = reproduce::plan(all.mesh, all.papers_mesh, common.device);
+  if (!options.only.empty()) keep_only(options.only, plan.stages);
+  State state(folder);
+  ConsoleMonitor monitor(common.style());
+  Run run{options, common, monitor, sha256_hex(std::string_view(read_file("/proc/self/exe"))) + all.mesh_hash, 0, 0};
+  for (const Stage& stage : plan.stages) run.all += stage.seconds;
+  std::size_t number = 0;
+  for (const Stage& stage : plan.stages) {
+    const Ran ran = run_stage(stage, state, run);
+    run.before += stage.seconds;
+    monitor.clear();
+    if (!common.quiet)
+      say(fmt::format("[{}/{}] {}: {}\n", ++number, plan.stages.size(), stage.what,
+                      ran.exit_code != 0 ? fmt::format("FAILED with exit code {}: {}", ran.exit_code, ran.message)
+                      : ran.again        ? fmt::format("{:.1f} s", ran.seconds)
+                                         : fmt::format("there already ({:.1f} s)", ran.seconds)));
+    if (common.exit_code == 0) common.exit_code = ran.exit_code;
+    all.seconds += ran.seconds;
+    all.stages.push_back(ran);
+  }
+  const Documents found = documents(all, folder);
+  all.rows = paper_rows(found);
+  if (!all.papers_mesh) not_the_papers_body(all.rows, all.mesh);
+  if (const auto mass = found.find("mass.json"); mass != found.end())
+    all.device = mass->second.value("device", nlohmann::json());
+  if (const auto errata = found.find("errata.json"); errata != found.end()) all.errata = errata->second;
+  for (const Figure& figure : plan.figures)
+    if (fs::exists(folder / figure.file)) all.figures.push_back(figure);
+  write_whole(folder / "reproduce.json", json_text(reproduce_json(all)) + "\n");
+  write_whole(folder / "reproduce.md", reproduce_markdown(all));
+  const Tally counts = tally(all.rows);
+  write_stdout(fmt::format(
+      "{} numbers of the paper: {} agree to its printed digits, {} differ, {} not compared, {} not "
+      "computed\n{} figures, {:.1f} s\n{}\n{}\n",
+      all.rows.size(), counts.agrees, counts.differs, counts.not_compared, counts.not_computed, all.figures.size(),
+      all.seconds, (folder / "reproduce.md").string(), (folder / "reproduce.json").string()));
+}
+
+} // namespace
+
+void add_reproduce(CLI::App& app, Common& common) {
+  CLI::App* command = app.add_subcommand(
+      "reproduce", "Every table, number and figure of \"Higher multipoles of the cow\", beside what the paper prints");
+  const auto options = std::make_shared<Options>();
+  command
+      ->add_option("-o,--output", options->folder,
+                   "Folder for reproduce.md, reproduce.json, figures/ and data/; a run "
+                   "that was stopped goes on where it was")
+      ->required()
+      ->check(not_empty())
+      ->type_name("DIR");
+  command->add_option("--mesh", options->mesh, "Another body instead of the paper's cow: nothing is compared then")
+      ->check(not_empty())
+      ->type_name("MESH");
+  command->add_option("--only", options->only, "Just these stages (names as in reproduce.json), separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAMES");
+  command->add_flag("--fresh", options->fresh, "Do everything again");
+  add_common_options(*command, common);
+  command->footer("Example: cowgpu reproduce -o out");
+  command->callback([=, &common] { reproduce_all(*options, common); });
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,48 @@
+// What `reproduce` found, as a document and as JSON.
+#pragma once
+
+#include "host/reproduce/row.hpp"
+#include "host/reproduce/stage.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace cowgpu::reproduce {
+
+/// How a stage ended.
+struct Ran {
+  Stage stage;
+  double seconds = 0;
+  int exit_code = 0;
+  bool again = false;  ///< false: left by an earlier run
+  std::string message; ///< of a stage that failed, its last words
+};
+
+struct Reproduction {
+  std::vector<std::string> command;
+  std::string created;
+  std::string mesh, mesh_hash;
+  bool papers_mesh = true;
+  nlohmann::ordered_json device; ///< as in the result of `expand`, or null
+  double seconds = 0;            ///< of all stages, whenever they ran
+  std::vector<Row> rows;
+  std::vector<Ran> stages;
+  std::vector<Figure> figures; ///< those that are there
+  nlohmann::json errata;       ///< of `cowgpu errata --json`, or null
+};
+
+/// How many rows of each verdict.
+struct Tally {
+  int agrees = 0, differs = 0, not_compared = 0, not_computed = 0;
+};
+Tally tally(const std::vector<Row>& rows);
+
+/// The document cowgpu.reproduce.v1.
+nlohmann::ordered_json reproduce_json(const Reproduction& all);
+
+/// The same to read, in Markdown, the pictures linked.
+std::string reproduce_markdown(const Reproduction& all);
+
+} // namespace cowgpu::reproduce
