@@ -286,6 +286,10 @@ with tempfile.TemporaryDirectory() as folder:
         assert (found["turn_first_order_rad"] is None) is ("--spin" in arguments)
 found["energy_drift"] = 1
 refuses(drop, found, "energy from nowhere")
+errata, found = load_schema("errata"), output_of("errata", "--json")
+jsonschema.validate(found, errata)
+found["errata"][0]["why"] = ""
+refuses(errata, found, "an erratum without a reason")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 inspect = load_schema("inspect")
 with tempfile.TemporaryDirectory() as folder:
@@ -305,4 +309,4 @@ with tempfile.TemporaryDirectory() as folder:
     assert whole["inscribed_radius"] < whole["brillouin_radius"]
     whole["self_intersections"]["listed"] = [{"faces": [1], "kind": "crossing", "place": [0, 0, 0]}]
     refuses(inspect, whole, "a pair of one face")
-print("59 documents and 8 files passed")
+print("60 documents and 8 files passed")

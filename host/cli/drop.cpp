@@ -136,7 +136,7 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
       {"feet_tilt_before_deg", "feet from down, dropped", d.tilt_before, "degrees"},
       {"feet_tilt_after_deg", "feet from down, as it touches", d.tilt_after, "degrees"},
       {"touches_with", "touches first with", touching_part(d)},
-      {"touch_point", "at, from the centre of mass, body's axes", d.touch, "m"},
+      {"touch_point", "at, from the centre, body's axes", d.touch, "m"},
       {"touch_count", "corners as low", double(r.as_low)},
       {"turn_rad", "turned by gravity", d.turn, "rad"},
       {"turn_deg", "the same", double(r.turn.norm() / degree), "degrees"},
@@ -155,11 +155,10 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
       {"speed_m_per_s", "speed then", r.speed, "m/s"},
       {"spin_for_half_turn_rad_per_s", "spin that turns by 180 degrees", half_turn, "rad/s"},
       {"spin_for_half_turn_rpm", "the same", half_turn * 30 / std::numbers::pi, "rpm"},
-      {"spin_for_feet_rad_per_s", "least spin that brings the feet down", double(d.tilt_before * degree) / time,
-       "rad/s"},
+      {"spin_for_feet_rad_per_s", "spin that brings the feet down", double(d.tilt_before * degree) / time, "rad/s"},
       {"order", "highest degree", double(d.problem.body.order)},
       {"energy_drift", "energy off, of the kinetic", double(r.energy_drift)},
-      {"momentum_drift", "angular momentum about the earth off", double(r.momentum_drift), "of its larger part"}};
+      {"momentum_drift", "angular momentum off", double(r.momentum_drift), "of its larger part"}};
   return found;
 }
 

@@ -105,7 +105,7 @@ void add_locking(const Tides& t, const Options& options, Findings& found) {
       options.spin.empty() ? 0 : parse_positive("--spin", options.spin, Dimension::angular_rate, "1rad/s");
   if (spin > 0 && !is_isotropic(t.principal)) {
     const double half = capture_half_width(t.principal, t.orbit);
-    found.rows.push_back({"caught", "a body that spins so about C is caught", std::abs(spin - t.orbit.rate) < half});
+    found.rows.push_back({"caught", "a body with this spin about C is caught", std::abs(spin - t.orbit.rate) < half});
   }
   if (options.love.empty() && options.quality.empty()) return;
   if (options.love.empty() || options.quality.empty() || options.spin.empty())
@@ -128,11 +128,11 @@ void add_attitude(const Tides& t, const Options& options, Findings& found) {
   const OrbitTorque all = orbit_torque(t.body, t.orbit, attitude), second = orbit_torque(quadrupole, t.orbit, attitude);
   const auto vector = [](const LongVec3& v) { return Value(Vec3(v.cast<double>())); };
   found.rows.push_back({"attitude", "attitude, body's axes to the orbit's", Eigen::Matrix3d(attitude.cast<double>())});
-  found.rows.push_back({"torque", "gravity's torque there (out, along, normal)", vector(all.gravity), "N m"});
+  found.rows.push_back({"torque", "gravity's torque (out, along, normal)", vector(all.gravity), "N m"});
   found.rows.push_back({"torque_quadrupole", "of degree 2", vector(second.gravity), "N m"});
   found.rows.push_back({"torque_higher", fmt::format("of degrees 3 to {}", t.body.order),
                         vector(LongVec3(all.gravity - second.gravity)), "N m"});
-  found.rows.push_back({"torque_at_rest", "less what keeps it turning with the orbit", vector(all.rest), "N m"});
+  found.rows.push_back({"torque_at_rest", "less what keeps it with the orbit", vector(all.rest), "N m"});
 }
 
 Tides read_tides(const PhysicsInput& input, const PhysicsOptions& common, const Options& options, Findings& found) {
@@ -176,10 +176,10 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
       {"principal_moments", "moments of inertia A, B, C", *t.principal.moments, "kg m^2"},
       {"principal_axes", "their axes, one a row", Eigen::Matrix3d(t.principal.axes.transpose())}};
   add_attitude(t, options, found);
-  found.rows.push_back({"largest_torque", "largest torque of degree 2, 3 GM (C - A)/(2 r^3)",
-                        largest_quadrupole_torque(t.principal, t.orbit), "N m"});
+  found.rows.push_back(
+      {"largest_torque", "3 GM (C - A)/(2 r^3), its largest", largest_quadrupole_torque(t.principal, t.orbit), "N m"});
   found.rows.push_back({"librates", "librates", !isotropic});
-  found.rows.push_back({"pitch_period_s", "libration about A outwards, C normal: pitch", librates(stable.pitch), "s"});
+  found.rows.push_back({"pitch_period_s", "libration (A out, C normal): pitch", librates(stable.pitch), "s"});
   found.rows.push_back({"roll_yaw_slow_period_s", "roll and yaw, slow", librates(stable.roll_yaw[0]), "s"});
   found.rows.push_back({"roll_yaw_fast_period_s", "roll and yaw, fast", librates(stable.roll_yaw[1]), "s"});
   const double half = isotropic ? 0 : capture_half_width(t.principal, t.orbit);
