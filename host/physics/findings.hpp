@@ -22,6 +22,21 @@ struct Finding {
   std::string unit = {}; ///< "W"; in JSON the member `units` has it under the same key
 };
 
+/// A column of a table; the name is lower case with underscores, for JSON and CSV.
+struct Column {
+  std::string name;      ///< "order"
+  std::string unit = {}; ///< "N"; empty where there is none
+};
+
+/// Rows of numbers, words and yes or no: in JSON `key` is {"columns": [...], "units": [...], "rows": [[...], ...]}. Each row
+/// has as many values as there are columns.
+struct Table {
+  std::string key;   ///< in JSON: "orders"
+  std::string label; ///< on the screen, above the columns
+  std::vector<Column> columns;
+  std::vector<std::vector<Value>> rows;
+};
+
 /// A number that a paper prints, beside ours.
 struct Comparison {
   std::string quantity;
@@ -33,6 +48,7 @@ struct Findings {
   std::string title;
   std::string input_kind, input_name, input_sha256; ///< "mesh" or "coefficients"; a mesh's hash, else empty
   std::vector<Finding> rows;
+  std::vector<Table> tables;
   std::vector<Comparison> paper; ///< "Higher multipoles of the cow"; empty unless asked for
   std::vector<std::string> notes;
 };

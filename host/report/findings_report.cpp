@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace cowgpu {
@@ -52,6 +53,46 @@ struct ToText {
   }
 };
 
+ordered_json table_json(const Table& table) {
+  ordered_json columns = ordered_json::array(), units = ordered_json::array(), rows = ordered_json::array();
+  for (const Column& column : table.columns) {
+    columns.push_back(column.name);
+    units.push_back(column.unit);
+  }
+  for (const auto& row : table.rows) {
+    ordered_json values = ordered_json::array();
+    for (const Value& value : row) values.push_back(std::visit(ToJson{}, value));
+    rows.push_back(std::move(values));
+  }
+  return {{"columns", columns}, {"units", units}, {"rows", rows}};
+}
+
+// Cells are shorter than lines of their own: six digits tell what a table is for, and the JSON has all of them.
+std::string cell_text(const Value& value) {
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{:.6g}", shown_number(*number));
+  if (std::holds_alternative<std::monostate>(value)) return "-";
+  return std::visit(ToText{}, value);
+}
+
+void write_table(const Table& table, const Sink& sink) {
+  std::vector<std::size_t> widths;
+  std::vector<std::vector<std::string>> lines(1 + table.rows.size());
+  for (const Column& column : table.columns)
+    lines[0].push_back(column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit));
+  for (std::size_t r = 0; r < table.rows.size(); ++r)
+    for (const Value& value : table.rows[r]) lines[r + 1].push_back(cell_text(value));
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    widths.push_back(0);
+    for (const auto& line : lines) widths[c] = std::max(widths[c], line[c].size());
+  }
+  sink(fmt::format("\n{}\n", table.label));
+  for (const auto& line : lines) {
+    std::string text;
+    for (std::size_t c = 0; c < line.size(); ++c) text += fmt::format("  {:>{}}", line[c], widths[c]);
+    sink(text + "\n");
+  }
+}
+
 double relative(const Comparison& row) {
   return row.printed == 0 ? row.ours - row.printed : row.ours / row.printed - 1;
 }
@@ -69,6 +110,7 @@ ordered_json findings_json(const Findings& findings, const std::string& schema,
     all[row.key] = std::visit(ToJson{}, row.value);
     if (!row.unit.empty()) units[row.key] = row.unit;
   }
+  for (const Table& table : findings.tables) all[table.key] = table_json(table);
   all["units"] = units;
   if (findings.paper.empty()) return all;
   ordered_json paper = ordered_json::array();
@@ -93,6 +135,7 @@ void write_findings(const Findings& findings, const Sink& sink) {
     else
       sink(fmt::format("  {:<38} {}{}\n", row.label, value, row.unit.empty() ? "" : " " + row.unit));
   }
+  for (const Table& table : findings.tables) write_table(table, sink);
   if (findings.paper.empty()) return;
   sink(fmt::format("\nbeside the paper's numbers\n  {:<34} {:>14} {:>14} {:>10}\n", "", "here", "paper", "difference"));
   for (const Comparison& row : findings.paper)

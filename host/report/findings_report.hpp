@@ -11,12 +11,12 @@
 
 namespace cowgpu {
 
-/// The document `schema` ("cowgpu.tensors.v1"): program, command, created, input, notes, each row as a member, `units` and,
-/// where there are any, `paper`.
+/// The document `schema` ("cowgpu.tensors.v1"): program, command, created, input, notes, each row and each table as a member,
+/// `units` and, where there are any, `paper`.
 nlohmann::ordered_json findings_json(const physics::Findings& findings, const std::string& schema,
                                      const std::vector<std::string>& command);
 
-/// Title, notes, a line or three for each row, and a table of the paper's numbers.
+/// Title, notes, a line or three for each row, tables with aligned columns, and one of the paper's numbers.
 void write_findings(const physics::Findings& findings, const Sink& sink);
 
 } // namespace cowgpu
