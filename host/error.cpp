@@ -21,6 +21,7 @@ std::string_view name(Fault fault) {
   case Fault::map_topology: return "map-topology";
   case Fault::map_failed: return "map-failed";
   case Fault::mesh_range: return "mesh-range";
+  case Fault::cannot_stand: return "cannot-stand";
   case Fault::too_large: return "too-large";
   case Fault::no_loader: return "no-loader";
   case Fault::no_device: return "no-device";

@@ -54,6 +54,10 @@ constexpr Unit units[] = {
     {Dimension::mass, "g", 1e-3},
     {Dimension::mass, "t", 1e3},
     {Dimension::mass, "lb", 0.45359237},
+    {Dimension::force, "N", 1},
+    {Dimension::force, "kN", 1e3},
+    {Dimension::force, "kgf", 9.80665},
+    {Dimension::force, "lbf", 0.45359237 * 9.80665},
 };
 
 std::string names(Dimension dimension) {
