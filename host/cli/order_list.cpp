@@ -25,7 +25,7 @@ std::optional<int> number(std::string_view text) {
 
 } // namespace
 
-std::vector<int> parse_orders(const std::vector<std::string>& lists, bool mesh_too) {
+std::vector<int> parse_orders(const std::vector<std::string>& lists, std::string_view whole) {
   std::vector<int> orders;
   const auto add = [&](int order) {
     if (std::find(orders.begin(), orders.end(), order) == orders.end()) orders.push_back(order);
@@ -33,7 +33,7 @@ std::vector<int> parse_orders(const std::vector<std::string>& lists, bool mesh_t
   for (const std::string& list : lists) {
     std::istringstream words(list + ",");
     for (std::string word; std::getline(words, word, ',');) {
-      if (mesh_too && word == "mesh") {
+      if (!whole.empty() && word == whole) {
         add(whole_mesh);
         continue;
       }
@@ -49,7 +49,7 @@ std::vector<int> parse_orders(const std::vector<std::string>& lists, bool mesh_t
                     fmt::format("--order {}: \"{}\" is no order; there are whole numbers from 0 to {}, ranges such as "
                                 "0..7{}, separated by commas",
                                 shown(list), shown(word), largest_surface_degree,
-                                mesh_too ? ", and mesh for the body itself" : ""));
+                                whole.empty() ? "" : fmt::format(", and {} for the body itself", whole)));
       for (int order = *first; order <= *last; ++order) add(order);
     }
   }

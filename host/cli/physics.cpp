@@ -37,6 +37,11 @@ constexpr std::array applications = {
                 "Examples: cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude upside-down\n"
                 "          cowgpu drop benchmark --length 2.5m --height 10m --attitude on-side --spin x,10rpm",
                 add_drop},
+    Application{"tip", "What tips a standing body over onto its side: the least force, and the least push that lasts",
+                "Examples: cowgpu tip benchmark --length 2.5m --density 1g/cm3 --friction 0.6 --push 5000N:0.1s\n"
+                "          cowgpu tip benchmark --of stretch --order 0..8 --json\n"
+                "          cowgpu tip benchmark --recipe paper",
+                add_tip},
 };
 
 // The paper's body, but for what the user says.
@@ -84,14 +89,7 @@ bool is_coefficient_file(const std::string& input) {
   return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
 }
 
-PhysicsInput load_input(const PhysicsOptions& options) {
-  const BodyOptions& body = options.body;
-  PhysicsInput input;
-  if (!is_coefficient_file(body.mesh)) {
-    input.body = load_body(body, input.notes);
-    return input;
-  }
-  stated_units(body);
+void refuse_placing(const BodyOptions& body) {
   for (const auto& [given, option] :
        {std::pair(body.origin != "com", "--origin"), std::pair(!body.length.empty(), "--length"),
         std::pair(!body.axes.empty(), "--axes"), std::pair(!body.rotate.empty(), "--rotate"),
@@ -100,6 +98,17 @@ PhysicsInput load_input(const PhysicsOptions& options) {
       throw Error(Fault::bad_argument, fmt::format("{} places a mesh, and {} holds coefficients; `cowgpu convert "
                                                    "--rotate` turns those, and --length-unit says their unit",
                                                    option, body.mesh));
+}
+
+PhysicsInput load_input(const PhysicsOptions& options) {
+  const BodyOptions& body = options.body;
+  PhysicsInput input;
+  if (!is_coefficient_file(body.mesh)) {
+    input.body = load_body(body, input.notes);
+    return input;
+  }
+  stated_units(body);
+  refuse_placing(body);
   input.coefficients = read_coefficient_set(body.mesh);
   input.notes = input.coefficients->notes;
   return input;

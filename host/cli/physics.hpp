@@ -32,6 +32,9 @@ struct PhysicsInput {
 /// Whether an input names a file of coefficients, by its suffix: .json, .csv, .nc, .gfc, .sh.
 bool is_coefficient_file(const std::string& input);
 
+/// Throws Error(bad_argument) for options that place a mesh, where the input is coefficients.
+void refuse_placing(const BodyOptions& body);
+
 /// Reads either. Options that place a mesh are refused for coefficients: Error(bad_argument). Throws what load_body() and
 /// read_coefficient_set() throw.
 PhysicsInput load_input(const PhysicsOptions& options);
@@ -73,5 +76,6 @@ Solve add_tensors(CLI::App& command, Common& common);
 Solve add_radiate(CLI::App& command, Common& common);
 Solve add_tides(CLI::App& command, Common& common);
 Solve add_drop(CLI::App& command, Common& common);
+Solve add_tip(CLI::App& command, Common& common);
 
 } // namespace cowgpu::cli

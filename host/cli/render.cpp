@@ -74,7 +74,7 @@ void run(const Options& given, const Common& common) {
   std::vector<View> views;
   for (const std::string& view : options.views) views.push_back(parse_view(view));
   if (views.empty()) views.emplace_back();
-  const std::vector<int> orders = parse_orders(options.orders, true);
+  const std::vector<int> orders = parse_orders(options.orders, "mesh");
   const bool rebuilt = !orders.empty() || is_result_file(options.source.input);
   if (!rebuilt && (!options.source.of.empty() || !options.fields.empty() || options.source.lmax >= 0 ||
                    !options.source.mesh.empty() || options.resolution > 0))

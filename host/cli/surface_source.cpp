@@ -41,6 +41,7 @@ SurfaceSource from_file(const SurfaceChoice& choice) {
   source.map_method = file.map_method;
   source.mesh = file.mesh;
   source.mesh_hash = file.mesh_hash;
+  source.placement = file.placement;
   if (choice.mesh.empty()) return source;
   source.body = body_of(choice.mesh, file.placement);
   const RawMesh& mesh = source.body->surface.mesh();

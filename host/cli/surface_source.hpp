@@ -27,6 +27,7 @@ struct SurfaceSource {
   SurfaceExpansion expansion;
   std::string recipe, map_method;
   std::string mesh, mesh_hash; ///< name and SHA-256 of the mesh that was expanded
+  Placement placement;         ///< of that mesh, before it was expanded
   std::optional<Body> body;    ///< where the mesh is known; density 1
   std::vector<std::string> notes;
 };

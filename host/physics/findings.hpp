@@ -26,6 +26,7 @@ struct Finding {
 struct Column {
   std::string name;      ///< "order"
   std::string unit = {}; ///< "N"; empty where there is none
+  bool on_screen = true; ///< false: in JSON alone
 };
 
 /// Rows of numbers, words and yes or no: in JSON `key` is {"columns": [...], "units": [...], "rows": [[...], ...]}. Each row
@@ -35,6 +36,7 @@ struct Table {
   std::string label; ///< on the screen, above the columns
   std::vector<Column> columns;
   std::vector<std::vector<Value>> rows;
+  bool as_entries = false; ///< in JSON instead a list of objects with the columns as members; units among those of Findings
 };
 
 /// A number that a paper prints, beside ours.

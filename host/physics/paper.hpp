@@ -22,6 +22,9 @@ inline constexpr double timescale_s = 1.9e49;
 inline constexpr double deficit = 1.1432e-32; ///< 1 - omega_now, of 0.999999999999999999999999999999988568
 inline constexpr const char* omega_now = "0.999999999999999999999999999999988568";
 
+inline constexpr double sustained_force_N = 500; ///< that a human can keep up
+inline constexpr double punch_N = 5000;          ///< of an elite boxer
+
 /// As set for the paper's numbers.
 inline constexpr const char* mesh = "benchmark";
 inline constexpr const char* length_unit = "2.39m";

@@ -53,6 +53,16 @@ struct ToText {
   }
 };
 
+ordered_json entries_json(const Table& table) {
+  ordered_json entries = ordered_json::array();
+  for (const auto& row : table.rows) {
+    ordered_json entry = ordered_json::object();
+    for (std::size_t c = 0; c < row.size(); ++c) entry[table.columns[c].name] = std::visit(ToJson{}, row[c]);
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
 ordered_json table_json(const Table& table) {
   ordered_json columns = ordered_json::array(), units = ordered_json::array(), rows = ordered_json::array();
   for (const Column& column : table.columns) {
@@ -75,22 +85,19 @@ std::string cell_text(const Value& value) {
 }
 
 void write_table(const Table& table, const Sink& sink) {
-  std::vector<std::size_t> widths;
-  std::vector<std::vector<std::string>> lines(1 + table.rows.size());
-  for (const Column& column : table.columns)
-    lines[0].push_back(column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit));
-  for (std::size_t r = 0; r < table.rows.size(); ++r)
-    for (const Value& value : table.rows[r]) lines[r + 1].push_back(cell_text(value));
+  std::vector<std::string> lines(1 + table.rows.size());
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    widths.push_back(0);
-    for (const auto& line : lines) widths[c] = std::max(widths[c], line[c].size());
+    const Column& column = table.columns[c];
+    if (!column.on_screen) continue;
+    std::vector<std::string> cells = {column.unit.empty() ? column.name
+                                                          : fmt::format("{} [{}]", column.name, column.unit)};
+    for (const auto& row : table.rows) cells.push_back(cell_text(row[c]));
+    std::size_t width = 0;
+    for (const std::string& cell : cells) width = std::max(width, cell.size());
+    for (std::size_t r = 0; r < cells.size(); ++r) lines[r] += fmt::format("  {:>{}}", cells[r], width);
   }
   sink(fmt::format("\n{}\n", table.label));
-  for (const auto& line : lines) {
-    std::string text;
-    for (std::size_t c = 0; c < line.size(); ++c) text += fmt::format("  {:>{}}", line[c], widths[c]);
-    sink(text + "\n");
-  }
+  for (const std::string& line : lines) sink(line + "\n");
 }
 
 double relative(const Comparison& row) {
@@ -110,7 +117,11 @@ ordered_json findings_json(const Findings& findings, const std::string& schema,
     all[row.key] = std::visit(ToJson{}, row.value);
     if (!row.unit.empty()) units[row.key] = row.unit;
   }
-  for (const Table& table : findings.tables) all[table.key] = table_json(table);
+  for (const Table& table : findings.tables) {
+    all[table.key] = table.as_entries ? entries_json(table) : table_json(table);
+    for (const Column& column : table.columns)
+      if (table.as_entries && !column.unit.empty()) units[table.key + "." + column.name] = column.unit;
+  }
   all["units"] = units;
   if (findings.paper.empty()) return all;
   ordered_json paper = ordered_json::array();

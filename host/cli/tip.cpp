@@ -1,0 +1,316 @@
+#include "host/cli/tip_input.hpp"
+#include "host/cli/tip_push.hpp"
+
+#include "host/error.hpp"
+#include "host/physics/paper.hpp"
+#include "host/spectrum/expand_surface.hpp"
+#include "host/units.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace cowgpu::cli {
+namespace {
+
+using namespace physics;
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+struct Options {
+  TipChoice choice;
+  PushOptions push;
+  std::string side = "weaker";
+  bool as_modelled = false;
+  std::string tolerance;
+  double gravity = standard_gravity;
+  double friction = -1; // below 0: not given
+};
+
+// A body on the ground and what tips it to either side.
+struct Stood {
+  Stance stance;
+  Tipping left, right;
+  Side side = Side::right;
+  const Tipping& chosen() const { return side == Side::left ? left : right; }
+};
+
+Stood stand_up(TipBody body, const StandOptions& how, const std::string& side) {
+  Stood stood;
+  stood.stance = stand(std::move(body), how);
+  stood.left = tipping(stood.stance, Side::left);
+  stood.right = tipping(stood.stance, Side::right);
+  stood.side = side == "left" ? Side::left : side == "right" ? Side::right : weaker_side(stood.left, stood.right);
+  return stood;
+}
+
+StandOptions stand_options(const Options& options, const TipInput& input) {
+  StandOptions how;
+  how.as_modelled = options.as_modelled;
+  if (options.tolerance.empty()) return how;
+  const Measure tolerance = parse_measure("--contact-tolerance", options.tolerance, Dimension::length);
+  if (!(tolerance.value >= 0))
+    throw Error(Fault::bad_argument, fmt::format("--contact-tolerance {}: it must not be below 0", options.tolerance));
+  if (tolerance.has_unit && !input.metric)
+    throw Error(Fault::bad_argument, fmt::format("--contact-tolerance {}: a length with a unit needs the mesh's: add "
+                                                 "--length-unit or --length",
+                                                 options.tolerance));
+  how.contact_tolerance = tolerance.value * (tolerance.has_unit ? 1 : input.unit);
+  return how;
+}
+
+// Forces in newtons, where there are any.
+struct Weight {
+  double newtons = 0;
+  bool metric = false;
+  Value of(double force) const { return metric ? Value(force * newtons) : Value(); }
+  Value of(const std::optional<double>& force) const { return force ? of(*force) : Value(); }
+};
+
+std::vector<Value> order_row(const Value& order, const Stood& s, double gravity, bool metric, const std::string& note) {
+  const Tipping& t = s.chosen();
+  const Weight weight{s.stance.body.mass * gravity, metric};
+  const Rocker body = rocker(s.stance.body, t, gravity, true);
+  return {order,
+          name(t.side),
+          t.pivot,
+          t.point,
+          t.direction,
+          weight.of(t.force),
+          t.force,
+          weight.of(t.force_paper_balance),
+          weight.of(s.left.force),
+          weight.of(s.right.force),
+          t.friction_needed,
+          metric ? Value(body.least_impulse()) : Value(),
+          metric ? Value(body.inertia) : Value(),
+          s.stance.attitude.angle * degrees,
+          note};
+}
+
+std::string order_note(const Stance& stance, const std::string& first) {
+  std::string note = first;
+  const auto add = [&](const char* text) { note += (note.empty() ? "" : "; ") + std::string(text); };
+  if (stance.rolls) add("rolls: touches at one point");
+  if (stance.held) add("held fore and aft");
+  return note;
+}
+
+Table orders_table(const TipInput& input, const Options& options, const StandOptions& how, const Stood& full,
+                   const std::string& length, Monitor& monitor) {
+  Table table{"orders",
+              fmt::format("by order{}: the force that begins to tip it, and to which side",
+                          input.expansion ? " of " + input.expansion_name : ""),
+              {{"order"},
+               {"side"},
+               {"pivot", length, false},
+               {"point", length, false},
+               {"direction", "", false},
+               {"force_N", "N"},
+               {"force_over_weight"},
+               {"force_N_paper_balance", "N"},
+               {"force_left_N", "N", false},
+               {"force_right_N", "N", false},
+               {"friction_needed"},
+               {"least_impulse", "N s"},
+               {"inertia_about_pivot", "kg m^2", false},
+               {"settle_angle_deg", "degrees"},
+               {"note"}},
+              {}};
+  table.as_entries = true;
+  for (std::size_t i = 0; i < input.orders.size(); ++i) {
+    check_stop(monitor);
+    monitor.progress("orders stood up", double(i) / double(input.orders.size()));
+    const int order = input.orders[i];
+    try {
+      std::string note;
+      const Stood stood = stand_up(order_body(input, options.choice, order, monitor, note), how, options.side);
+      table.rows.push_back(
+          order_row(double(order), stood, options.gravity, input.metric, order_note(stood.stance, note)));
+    } catch (const Error& error) {
+      if (error.fault() != Fault::cannot_stand && error.fault() != Fault::mesh_no_volume &&
+          error.fault() != Fault::mesh_not_finite)
+        throw;
+      std::vector<Value> row(table.columns.size());
+      row.front() = double(order);
+      row.back() = std::string(error.what());
+      table.rows.push_back(std::move(row));
+    }
+  }
+  table.rows.push_back(order_row(std::string("full"), full, options.gravity, input.metric,
+                                 order_note(full.stance, input.full_is == "the mesh" ? "" : input.full_is)));
+  return table;
+}
+
+Table patch_table(const Stance& stance, const std::string& length) {
+  Table table{"contact_patch", "corners of the contact patch", {{"x", length}, {"y", length}, {"z", length}}, {}};
+  for (const Vec3& p : stance.contact.patch) table.rows.push_back({p.x(), p.y(), p.z()});
+  return table;
+}
+
+void add_force_rows(const Stood& stood, const TipInput& input, const Options& options, Findings& found) {
+  const Stance& stance = stood.stance;
+  const Tipping& t = stood.chosen();
+  const std::string length = input.metric ? "m" : "of the mesh";
+  const Weight weight{stance.body.mass * options.gravity, input.metric};
+  found.rows = {
+      {"body", "body", input.full_is},
+      {"attitude", "stands", std::string(options.as_modelled ? "as modelled" : "settled")},
+      {"settle_angle_deg", "turned to settle by", stance.attitude.angle * degrees, "degrees"},
+      {"support_points", "vertices that touch the ground", double(stance.contact.support.size())},
+      {"over_patch", "barycentre over the contact patch", !stance.held},
+      {"mass_kg", "mass", input.metric ? Value(stance.body.mass) : Value(), "kg"},
+      {"gravity", "gravity", options.gravity, "m/s^2"},
+      {"weight_N", "weight", weight.of(1), "N"},
+      {"barycentre", "barycentre", stance.body.barycentre, length},
+      {"side", "falls to the", name(t.side)},
+      {"pivot", "pivot", t.pivot, length},
+      {"point", "pushed at", t.point, length},
+      {"direction", "pushed towards", t.direction},
+      {"force_N", "force to begin, about the pivot", weight.of(t.force), "N"},
+      {"force_over_weight", "the same over the weight", t.force},
+      {"force_N_paper_balance", "about the barycentre, as the paper has it", weight.of(t.force_paper_balance), "N"},
+      {"force_N_paper_literal", "the same with its arm in space", weight.of(t.force_paper_literal), "N"},
+      {"force_left_N", "force to begin, to the left", weight.of(stood.left.force), "N"},
+      {"force_right_N", "to the right", weight.of(stood.right.force), "N"},
+      {"friction_needed", "friction coefficient not to slip", t.friction_needed},
+  };
+  if (options.friction < 0) return;
+  const double slip = t.slip_force(options.friction);
+  found.rows.push_back({"friction", "friction coefficient", options.friction});
+  found.rows.push_back({"slip_force_N", "force that makes it slip", weight.of(slip), "N"});
+  found.rows.push_back({"slip_force_over_weight", "the same over the weight", slip});
+  found.rows.push_back({"slips_before_tipping", "slips before it tips", options.friction < t.friction_needed});
+}
+
+void add_notes(const Stood& stood, const TipInput& input, const Options& options, Findings& found) {
+  const Stance& stance = stood.stance;
+  if (!input.metric)
+    found.notes.push_back("no unit of length was stated: forces are in units of the body's weight; --length or "
+                          "--length-unit make them newtons");
+  if (!options.as_modelled)
+    found.notes.push_back(
+        fmt::format("settled: it rolled down from the attitude as modelled to where its barycentre is "
+                    "over a facet of its hull; coordinates are those of the body turned by {:.6g} "
+                    "degrees about their origin",
+                    stance.attitude.angle * degrees));
+  if (stance.attitude.balanced)
+    found.notes.push_back(
+        "on the way it stood on a corner or an edge in balance; it was let fall to the right, or off the "
+        "edge");
+  if (stance.held)
+    found.notes.push_back(
+        "the barycentre is not over the contact patch: unless it is held it falls fore or aft first; only "
+        "torque about x counts here");
+  if (!input.orders.empty())
+    found.notes.push_back("orders have the mass of the whole; where their surface crosses itself, regions count by how "
+                          "often it winds round them; an order that cannot stand has no force");
+  found.notes.push_back(
+      "the force acts at the last point of the ray from the pivot through the barycentre, at right angles "
+      "to it; the paper's balance about the barycentre leaves out friction's torque");
+}
+
+std::vector<Comparison> beside_paper(const TipInput& input, const Options& options, const Stood& settled) {
+  const double weight = settled.stance.body.mass * options.gravity;
+  constexpr double human = paper::sustained_force_N;
+  const auto factor = [&](double force) {
+    return fmt::format("no force is printed: 500 N are 'out of reach by a factor of a few', here {:.2f}",
+                       force / human);
+  };
+  std::vector<Comparison> rows;
+  const double volume = cowgpu::volume(input.full.vertices, input.full.faces);
+  const Stood ball = stand_up(ball_like(input.full, volume), {}, "right");
+  rows.push_back({"spherical cow, N", ball.chosen().force * weight, 0});
+  const auto add = [&](const std::string& what, double force) { rows.push_back({what, force, human, factor(force)}); };
+  const Tipping& t = settled.chosen();
+  add("settled, N", t.force * weight);
+  add("settled, its balance, N", t.force_paper_balance * weight);
+  if (t.force_paper_literal) add("settled, its arm in space, N", *t.force_paper_literal * weight);
+  for (const auto& [what, tolerance] :
+       {std::pair("hind hooves' tips", 0.0), std::pair("hind hooves", 0.005), std::pair("all hooves", 0.01)}) {
+    const Stood modelled = stand_up(input.full, {true, tolerance * input.unit}, "weaker");
+    add(fmt::format("as modelled, {}, N", what), modelled.chosen().force * weight);
+  }
+  return rows;
+}
+
+Findings solve(const PhysicsOptions& common, const Options& options, const Common& program) {
+  const PushPlan plan = plan_push(options.push);
+  TipInput input = load_tip_input(common, options.choice, program);
+  if (!input.metric && (plan.profile || plan.punch_duration))
+    throw Error(Fault::bad_argument,
+                "--push and --punch-duration are about newtons and seconds: add --length, how long "
+                "the body is, or --length-unit, and its --density");
+  const StandOptions how = stand_options(options, input);
+  const Stood stood = stand_up(input.full, how, options.side);
+  Findings found = std::move(input.head);
+  ConsoleMonitor monitor(program.style());
+  add_notes(stood, input, options, found);
+  add_force_rows(stood, input, options, found);
+  const std::string length = input.metric ? "m" : "of the mesh";
+  std::optional<double> friction;
+  if (options.friction >= 0) friction = options.friction;
+  if (input.metric)
+    add_push_findings(rocker(stood.stance.body, stood.chosen(), options.gravity, plan.turns_with_body), options.push,
+                      plan, friction, found);
+  found.tables.insert(found.tables.begin(), patch_table(stood.stance, length));
+  found.tables.push_back(orders_table(input, options, how, stood, length, monitor));
+  monitor.clear();
+  if (common.paper())
+    found.paper = beside_paper(input, options, options.as_modelled ? stand_up(input.full, {}, options.side) : stood);
+  return found;
+}
+
+} // namespace
+
+Solve add_tip(CLI::App& command, Common& common) {
+  const auto options = std::make_shared<Options>();
+  command.get_option("mesh")->description(
+      "Coefficients of its surface (FILE of `cowgpu expand --of stretch`), or a mesh: " + mesh_help());
+  command
+      .add_option(
+          "--order", options->choice.orders,
+          "Also the body of these orders of its surface, such as 0..8 or 0,4,full (the full body is always there)")
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  command
+      .add_option("--of", options->choice.of,
+                  "Of a mesh the map: stretch (default), harmonic, smooth or flow; of a file the expansion by name")
+      ->type_name("NAME");
+  command.add_option("--fields", options->choice.fields, "xyz, or f: distance and angles about the origin")
+      ->check(CLI::IsMember({"xyz", "f"}))
+      ->capture_default_str();
+  command
+      .add_option("--lmax", options->choice.lmax,
+                  "With --order: degree of a mesh's expansion (the largest order, 64 at least)")
+      ->check(CLI::Range(0, largest_surface_degree))
+      ->type_name("L");
+  command
+      .add_option(
+          "--resolution", options->choice.resolution,
+          "Vertices of rebuilt bodies lie on 2 N + 1 rings (N: four times the order, 128 at least, 256 at most or "
+          "the order)")
+      ->check(CLI::Range(1, largest_grid_degree))
+      ->type_name("N");
+  command.add_option("--mesh", options->choice.mesh, "Of a file: the true body")->type_name("MESH");
+  command.add_option("--side", options->side, "The side it falls to: left, right (z), or the weaker")
+      ->check(CLI::IsMember({"weaker", "left", "right"}))
+      ->capture_default_str();
+  command.add_flag("--as-modelled", options->as_modelled,
+                   "Do not let it settle on a facet of its hull: the ground is the plane of least y");
+  command
+      .add_option("--contact-tolerance", options->tolerance,
+                  "Vertices so little above the ground touch it, in the mesh's unit or with one (1e-9 of the body)")
+      ->type_name("LENGTH")
+      ->check(not_empty());
+  command.add_option("--gravity", options->gravity, "m/s^2")->check(positive_number())->capture_default_str();
+  command.add_option("--friction", options->friction, "Friction coefficient of the feet: do they slip first?")
+      ->check(non_negative_number())
+      ->type_name("MU");
+  add_push_options(command, options->push);
+  add_common_options(command, common);
+  return [options, &common](const PhysicsOptions& physics) { return solve(physics, *options, common); };
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,215 @@
+#include "host/cli/tip_push.hpp"
+
+#include "host/cli/commands.hpp"
+#include "host/error.hpp"
+#include "host/io/csv_table.hpp"
+#include "host/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cowgpu::cli {
+namespace {
+
+using namespace physics;
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+double parse_quantity(const char* option, const std::string& text, Dimension dimension, const char* example) {
+  const Measure measure = parse_measure(option, text, dimension);
+  if (!measure.has_unit)
+    throw Error(Fault::bad_argument, fmt::format("{} {}: it needs a unit, as in {}", option, text, example));
+  if (!(measure.value > 0)) throw Error(Fault::bad_argument, fmt::format("{} {}: it must be above 0", option, text));
+  return measure.value;
+}
+
+Profile read_profile(const std::string& file) {
+  const CsvTable table = read_csv(file);
+  const auto named = [&](std::size_t column, const char* plain, const char* with_unit) {
+    return table.columns[column] == plain || table.columns[column] == with_unit;
+  };
+  if (table.columns.size() != 2 || !named(0, "time", "time_s") || !named(1, "force", "force_N"))
+    table.fail(Fault::file_syntax, table.header_line, "the columns of a push are time,force, in seconds and newtons");
+  if (table.rows() < 2)
+    table.fail(Fault::file_syntax, table.header_line, "a push over time is at least two rows of time and force");
+  Profile profile;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double time = table.at(row, 0), force = table.at(row, 1);
+    if (force < 0) table.fail_row(row, fmt::format("the force is {} N; it must not be below 0", force));
+    if (time < (row ? profile.time.back() : 0))
+      table.fail_row(row, fmt::format("the time is {} s, before what it follows; times rise from 0 on", time));
+    profile.time.push_back(time);
+    profile.force.push_back(force);
+  }
+  return profile;
+}
+
+Profile parse_push(const std::string& text) {
+  if (text.ends_with(".csv")) return read_profile(text);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos)
+    throw Error(Fault::bad_argument, fmt::format("--push {}: it takes FORCE:DURATION, such as 5000N:0.1s, or FILE.csv "
+                                                 "with the columns time,force in seconds and newtons",
+                                                 text));
+  return square_pulse(parse_quantity("--push", text.substr(0, colon), Dimension::force, "5000N:0.1s"),
+                      parse_quantity("--push", text.substr(colon + 1), Dimension::time, "5000N:0.1s"));
+}
+
+Value finite(double value) {
+  return std::isfinite(value) ? Value(value) : Value();
+}
+
+std::string name(Outcome outcome) {
+  if (outcome == Outcome::tipped) return "tips over";
+  return outcome == Outcome::fell_back ? "lifts off and falls back" : "never lifts off";
+}
+
+// The force that just tips within a time: least_duration() falls with it.
+double least_force(const Rocker& rocker, double duration) {
+  double low = rocker.threshold(), high = 2 * low;
+  while (rocker.least_duration(high) > duration && high < 1e300) high *= 2;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = (low + high) / 2;
+    if (middle <= low || middle >= high) break;
+    (rocker.least_duration(middle) > duration ? low : high) = middle;
+  }
+  return high;
+}
+
+Table boundary(const Rocker& rocker, const PushOptions& options, const PushPlan& plan,
+               const std::optional<double>& friction) {
+  struct Row {
+    double force;
+    std::string mark;
+  };
+  const double threshold = rocker.threshold();
+  std::vector<Row> forces = {{plan.sustained, options.sustained + " sustained"},
+                             {plan.punch, options.punch + " punch"},
+                             {threshold, "threshold"}};
+  for (const double factor : {1.001, 1.01, 1.03, 1.1, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0})
+    forces.push_back({factor * threshold, ""});
+  std::stable_sort(forces.begin(), forces.end(), [](const Row& a, const Row& b) { return a.force < b.force; });
+  Table table{"boundary",
+              "how long a constant push must last to tip it (-: it never does)",
+              {{"force_N", "N"}, {"least_duration_s", "s"}, {"impulse", "N s"}, {"friction_needed"}, {"mark"}},
+              {}};
+  if (friction) table.columns.insert(table.columns.end() - 1, {"grips"});
+  for (const Row& row : forces) {
+    const double duration = rocker.least_duration(row.force);
+    const bool tips = std::isfinite(duration);
+    const double needed = push(rocker, square_pulse(row.force, tips ? duration * (1 + 1e-9) : 1)).friction_needed;
+    std::vector<Value> values = {row.force, finite(duration), finite(duration * row.force), finite(needed)};
+    if (friction) values.emplace_back(needed <= *friction);
+    values.emplace_back(row.mark);
+    table.rows.push_back(std::move(values));
+  }
+  return table;
+}
+
+void add_profile(const Rocker& rocker, const PushOptions& options, const Profile& profile,
+                 const std::optional<double>& friction, Findings& found) {
+  const PushResult result = push(rocker, profile);
+  const bool lifted = result.outcome != Outcome::never_lifted;
+  const std::vector<Finding> rows = {
+      {"push", "push", options.push},
+      {"push_impulse", "its impulse", profile.impulse(), "N s"},
+      {"push_outcome", "the body", name(result.outcome)},
+      {"push_tips", "tips over", result.outcome == Outcome::tipped},
+      {"push_peak_tilt_deg", "largest tilt", result.peak_tilt * degrees, "degrees"},
+      {"push_lift_time_s", "lifts off after", lifted ? Value(result.lift_time) : Value(), "s"},
+      {"push_end_time_s", "past the balance, or landed, after", lifted ? finite(result.end_time) : Value(), "s"},
+      {"push_friction_needed", "friction coefficient that takes", finite(result.friction_needed)},
+  };
+  found.rows.insert(found.rows.end(), rows.begin(), rows.end());
+  if (std::isinf(result.friction_needed))
+    found.notes.push_back(
+        fmt::format("after {:.4g} s of the push the feet leave the ground: the body does not turn about "
+                    "their edge any longer",
+                    result.friction_time));
+  if (!friction) return;
+  const bool slips = result.friction_needed > *friction;
+  found.rows.push_back({"push_slips", "its feet slip", slips});
+  if (slips)
+    found.notes.push_back(fmt::format("the feet slip during the push (first or most at {:.4g} s): the tilt is that of "
+                                      "feet that are held",
+                                      result.friction_time));
+}
+
+} // namespace
+
+void add_push_options(CLI::App& command, PushOptions& options) {
+  command
+      .add_option("--push", options.push,
+                  "A push that lasts: a constant FORCE:DURATION, such as 5000N:0.1s, or FILE.csv with the columns "
+                  "time,force (s, N; straight lines between)")
+      ->type_name("PUSH")
+      ->check(not_empty());
+  command
+      .add_option("--push-direction", options.direction,
+                  "body: at right angles to the line from pivot to point all the time; space: as it began")
+      ->check(CLI::IsMember({"body", "space"}))
+      ->capture_default_str();
+  command.add_option("--sustained", options.sustained, "A force that lasts, marked on the boundary")
+      ->type_name("FORCE")
+      ->capture_default_str();
+  command.add_option("--punch", options.punch, "A force of a moment: how long must it last?")
+      ->type_name("FORCE")
+      ->capture_default_str();
+  command
+      .add_option("--punch-duration", options.punch_duration, "How long it does last, such as 20ms: does it tip it?")
+      ->type_name("TIME")
+      ->check(not_empty());
+}
+
+PushPlan plan_push(const PushOptions& options) {
+  PushPlan plan;
+  plan.turns_with_body = options.direction == "body";
+  plan.sustained = parse_quantity("--sustained", options.sustained, Dimension::force, "500N");
+  plan.punch = parse_quantity("--punch", options.punch, Dimension::force, "5000N");
+  if (!options.punch_duration.empty())
+    plan.punch_duration = parse_quantity("--punch-duration", options.punch_duration, Dimension::time, "20ms");
+  if (!options.push.empty()) plan.profile = parse_push(options.push);
+  return plan;
+}
+
+Rocker rocker(const TipBody& body, const Tipping& tipping, double gravity, bool turns_with_body) {
+  return {body.mass, gravity, tipping.inertia, tipping.radius, tipping.balance_angle(), tipping.lever, turns_with_body};
+}
+
+void add_push_findings(const Rocker& rocker, const PushOptions& options, const PushPlan& plan,
+                       std::optional<double> friction, Findings& found) {
+  if (!(rocker.balance > 0)) {
+    found.notes.push_back("any push tips it, however small and short: it has no threshold and no boundary");
+    return;
+  }
+  const double duration = rocker.least_duration(plan.punch), impulse = rocker.least_impulse();
+  const std::vector<Finding> rows = {
+      {"push_direction", "direction of a push that lasts",
+       std::string(plan.turns_with_body ? "turns with the body" : "stays in space")},
+      {"balance_angle_deg", "falls by itself from a tilt of", rocker.balance * degrees, "degrees"},
+      {"inertia_about_pivot", "moment of inertia about the pivot edge", rocker.inertia, "kg m^2"},
+      {"least_energy_J", "energy that tips it",
+       rocker.mass * rocker.gravity * rocker.radius * (1 - std::cos(rocker.balance)), "J"},
+      {"least_impulse", "smallest impulse, of a short push", impulse, "N s"},
+      {"sustained_N", "sustained force", plan.sustained, "N"},
+      {"sustained_tips", "tips it in the end", plan.sustained > rocker.threshold()},
+      {"sustained_short_by", "force to begin over that", rocker.threshold() / plan.sustained},
+      {"punch_N", "punch", plan.punch, "N"},
+      {"punch_least_duration_s", "must last", finite(duration), "s"},
+      {"punch_impulse", "which is", finite(duration * plan.punch), "N s"},
+  };
+  found.rows.insert(found.rows.end(), rows.begin(), rows.end());
+  if (plan.punch_duration) {
+    const double needed = least_force(rocker, *plan.punch_duration);
+    found.rows.push_back({"punch_duration_s", "the punch lasts", *plan.punch_duration, "s"});
+    found.rows.push_back({"punch_tips", "and tips it", duration <= *plan.punch_duration});
+    found.rows.push_back({"punch_force_needed_N", "force that does in that time", needed, "N"});
+  }
+  if (plan.profile) add_profile(rocker, options, *plan.profile, friction, found);
+  found.tables.push_back(boundary(rocker, options, plan, friction));
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,43 @@
+// The push over time in `tip`: options, and what they find out.
+#pragma once
+
+#include "host/physics/findings.hpp"
+#include "host/physics/push.hpp"
+#include "host/physics/tip.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+
+namespace cowgpu::cli {
+
+struct PushOptions {
+  std::string push;               ///< FORCE:DURATION or FILE.csv, or empty
+  std::string direction = "body"; ///< or "space"
+  std::string sustained = "500N", punch = "5000N", punch_duration;
+};
+
+void add_push_options(CLI::App& command, PushOptions& options);
+
+/// The options read, before there is a body.
+struct PushPlan {
+  std::optional<physics::Profile> profile;
+  bool turns_with_body = true;
+  double sustained = 0, punch = 0;      ///< N
+  std::optional<double> punch_duration; ///< s
+};
+
+/// Throws Error(bad_argument) for words that mean nothing, what read_csv() throws, and file_syntax with the line for times that
+/// fall and forces below 0.
+PushPlan plan_push(const PushOptions& options);
+
+/// Of a body in SI units.
+physics::Rocker rocker(const physics::TipBody& body, const physics::Tipping& tipping, double gravity,
+                       bool turns_with_body);
+
+/// Rows, notes and the table `boundary`. `friction`: the coefficient, where it is given.
+void add_push_findings(const physics::Rocker& rocker, const PushOptions& options, const PushPlan& plan,
+                       std::optional<double> friction, physics::Findings& found);
+
+} // namespace cowgpu::cli

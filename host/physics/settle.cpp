@@ -1,0 +1,216 @@
+#include "host/physics/settle.hpp"
+
+#include "host/error.hpp"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace cowgpu::physics {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+
+// Of the body's size: vertices so near to the ground touch it, and a point so near to a border lies on it.
+constexpr double touching = 1e-10;
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+// Corners of the convex hull, counter-clockwise (Andrew's monotone chain); corners nearer than `noise` to the line of their
+// neighbours are left out.
+std::vector<std::size_t> hull(const std::vector<Vec2>& points, double noise) {
+  std::vector<std::size_t> order(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(points[a].x(), points[a].y()) < std::pair(points[b].x(), points[b].y());
+  });
+  std::vector<std::size_t> chain;
+  const auto add = [&](std::size_t next, std::size_t keep) {
+    while (chain.size() >= keep + 2) {
+      const Vec2 &a = points[chain[chain.size() - 2]], &b = points[chain.back()], &c = points[next];
+      if (cross(b - a, c - a) > noise * (c - a).norm()) break;
+      chain.pop_back();
+    }
+    if (chain.empty() || (points[chain.back()] - points[next]).norm() > noise) chain.push_back(next);
+  };
+  for (const std::size_t i : order) add(i, 0);
+  const std::size_t lower = chain.size() - 1;
+  for (auto i = order.rbegin(); i != order.rend(); ++i) add(*i, lower);
+  if (chain.size() > 1 && (points[chain.front()] - points[chain.back()]).norm() <= noise) chain.pop_back();
+  return chain;
+}
+
+// Where the origin lies with respect to a convex polygon, segment or point.
+struct Place {
+  double margin = 0;                ///< distance from the border, below 0 outside
+  Vec2 outward = Vec2::Zero();      ///< from the nearest border towards where the origin is, or would leave
+  std::vector<std::size_t> nearest; ///< the corner or the two of the edge, as indices of the polygon
+};
+
+Place place_of_origin(const std::vector<Vec2>& corners, double noise) {
+  Place place;
+  if (corners.size() == 1) {
+    place.margin = -corners[0].norm();
+    place.nearest = {0};
+    if (corners[0].norm() > noise) place.outward = -corners[0].normalized();
+    return place;
+  }
+  place.margin = -std::numeric_limits<double>::infinity();
+  double nearest = std::numeric_limits<double>::infinity();
+  bool inside = corners.size() > 2;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::size_t j = (i + 1) % corners.size();
+    const Vec2 edge = corners[j] - corners[i];
+    const double along = std::clamp(-corners[i].dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+    const Vec2 foot = corners[i] + along * edge;
+    const Vec2 normal = Vec2(edge.y(), -edge.x()).normalized(); // outward of a counter-clockwise polygon
+    if (normal.dot(corners[i]) <= 0) inside = false;
+    if (!(foot.norm() < nearest)) continue;
+    nearest = foot.norm();
+    place.nearest = along == 0 ? std::vector{i} : along == 1 ? std::vector{j} : std::vector{i, j};
+    place.outward = foot.norm() > noise && place.nearest.size() == 1 ? Vec2(-foot.normalized()) : normal;
+    if (place.nearest.size() == 2 && normal.dot(foot) > 0) place.outward = -normal; // of a segment: the other side
+  }
+  place.margin = inside ? nearest : -nearest;
+  return place;
+}
+
+// Two directions at right angles to `down`, the first near +z.
+std::pair<Vec3, Vec3> level_axes(const Vec3& down) {
+  const Vec3 aim = std::abs(down.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitY();
+  const Vec3 first = (aim - aim.dot(down) * down).normalized();
+  return {first, down.cross(first)};
+}
+
+Eigen::Matrix3d least_rotation(const Vec3& from, const Vec3& to) {
+  const double cosine = from.dot(to);
+  if (cosine < -1 + 1e-15) { // half a turn: about x, as good as any
+    const Vec3 axis = (Vec3::UnitX() - to.x() * to).normalized();
+    return 2 * axis * axis.transpose() - Eigen::Matrix3d::Identity();
+  }
+  const Vec3 k = from.cross(to);
+  Eigen::Matrix3d skew;
+  skew << 0, -k.z(), k.y(), k.z(), 0, -k.x(), -k.y(), k.x(), 0;
+  return Eigen::Matrix3d::Identity() + skew + skew * skew / (1 + cosine);
+}
+
+[[noreturn]] void no_facet(const std::string& why) {
+  throw Error(Fault::cannot_stand,
+              fmt::format("the body cannot stand: {}; a barycentre inside the convex hull of the vertices is needed, "
+                          "which parts of negative density can take away",
+                          why));
+}
+
+// The body on its way down: r = vertices - b.
+struct Roll {
+  std::vector<Vec3> r;
+  double size = 0;
+  Vec3 down = -Vec3::UnitY();
+
+  std::vector<std::size_t> touching_ground() const {
+    double height = -std::numeric_limits<double>::infinity();
+    for (const Vec3& v : r) height = std::max(height, down.dot(v));
+    if (!(height > touching * size)) no_facet("its barycentre is not above what it stands on");
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < r.size(); ++i)
+      if (down.dot(r[i]) >= height - touching * size) found.push_back(i);
+    return found;
+  }
+
+  // Turns `down` towards `way` until a vertex that is not in `touch` comes to the height of `pivot`.
+  void tip(const Vec3& way, std::size_t pivot, const std::vector<std::size_t>& touch) {
+    double least = std::numeric_limits<double>::infinity();
+    auto known = touch.begin();
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      if (known != touch.end() && *known == i) {
+        ++known;
+        continue;
+      }
+      const Vec3 d = r[i] - r[pivot];
+      least = std::min(least, std::atan2(-down.dot(d), way.dot(d)));
+    }
+    if (!(least < std::numbers::pi / 2)) no_facet("it rolls over its last vertex");
+    down = (std::cos(least) * down + std::sin(least) * way).normalized();
+  }
+};
+
+// The facet's own normal, from its corners: rounding of the way there goes.
+Vec3 facet_normal(const std::vector<Vec3>& corners, const Vec3& near) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    sum += (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]);
+  return sum.dot(near) < 0 ? Vec3(-sum.normalized()) : Vec3(sum.normalized());
+}
+
+} // namespace
+
+Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre) {
+  Roll roll;
+  for (const Vec3& v : vertices) {
+    roll.r.push_back(v - barycentre);
+    roll.size = std::max(roll.size, roll.r.back().norm());
+  }
+  if (!(roll.size > 0) || !std::isfinite(roll.size)) no_facet("it has no size");
+  const double noise = touching * roll.size;
+  Attitude attitude;
+  for (;; ++attitude.steps) {
+    if (std::size_t(attitude.steps) > 4 * roll.r.size() + 64) no_facet("it rolls on and on");
+    const std::vector<std::size_t> touch = roll.touching_ground();
+    const auto [first, second] = level_axes(roll.down);
+    std::vector<Vec2> flat;
+    for (const std::size_t i : touch) flat.emplace_back(first.dot(roll.r[i]), second.dot(roll.r[i]));
+    const std::vector<std::size_t> corner = hull(flat, noise);
+    std::vector<Vec2> polygon;
+    for (const std::size_t i : corner) polygon.push_back(flat[i]);
+    Place place = place_of_origin(polygon, noise);
+    if (place.margin > noise) {
+      std::vector<Vec3> corners;
+      for (const std::size_t i : corner) corners.push_back(roll.r[touch[i]]);
+      roll.down = facet_normal(corners, roll.down);
+      break;
+    }
+    if (std::abs(place.margin) <= noise) {
+      attitude.balanced = true;
+      if (place.outward.isZero(0)) place.outward = {1, 0};
+    }
+    const Vec3 way = place.outward.x() * first + place.outward.y() * second;
+    roll.tip(way, touch[corner[place.nearest[0]]], touch);
+  }
+  attitude.rotation = least_rotation(roll.down, -Vec3::UnitY());
+  attitude.angle = std::atan2(roll.down.cross(Vec3::UnitY()).norm(), -roll.down.y());
+  return attitude;
+}
+
+Contact contact(std::span<const Vec3> vertices, const Vec3& barycentre, double tolerance) {
+  Contact found;
+  double size = 0;
+  found.ground = std::numeric_limits<double>::infinity();
+  for (const Vec3& v : vertices) {
+    found.ground = std::min(found.ground, v.y());
+    size = std::max(size, (v - barycentre).norm());
+  }
+  const double noise = touching * size;
+  std::vector<Vec2> flat; // (z, x) from the barycentre's foot: counter-clockwise about y
+  for (const Vec3& v : vertices)
+    if (v.y() <= found.ground + std::max(tolerance, 10 * noise)) {
+      found.support.push_back(v);
+      flat.emplace_back(v.z() - barycentre.z(), v.x() - barycentre.x());
+    }
+  if (flat.empty()) no_facet("it has no vertex");
+  std::vector<Vec2> polygon;
+  for (const std::size_t i : hull(flat, noise)) {
+    found.patch.push_back(found.support[i]);
+    polygon.push_back(flat[i]);
+  }
+  found.margin = place_of_origin(polygon, noise).margin;
+  return found;
+}
+
+} // namespace cowgpu::physics

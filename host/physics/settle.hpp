@@ -1,0 +1,44 @@
+// How a body comes to rest on level ground: y is up.
+//
+// Quasi-static rolling: with the outward direction n pointing down in the body's frame and r_v = v - b, the barycentre b is
+// h(n) = max_v n.r_v above the ground, and the body rolls down the steepest way. Where the corners or the edge nearest to
+// the point below b touch alone, that way is a great circle of directions, until the next vertex touches: each step is
+// one pass over the vertices, exact up to rounding, and no convex hull is made of which a few facets would be used. It ends
+// on a facet of the hull whose inside b is over: a least value of h.
+#pragma once
+
+#include "host/types.hpp"
+
+#include <Eigen/Core>
+
+#include <span>
+#include <vector>
+
+namespace cowgpu::physics {
+
+/// An attitude: what the body as modelled is turned by, the least rotation that brings `down` to -y, so that the heading
+/// stays.
+struct Attitude {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  double angle = 0;      ///< of that rotation, radians
+  int steps = 0;         ///< corners, edges and facets it rolled over
+  bool balanced = false; ///< stood on a corner or an edge, b right above: it was let fall to the right, or off the edge
+};
+
+/// Rolls a body down from the attitude as modelled. Throws Error(cannot_stand) for a barycentre that the convex hull of the
+/// vertices does not hold inside (parts of negative mass), and for fewer than four vertices or flat ones.
+Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre);
+
+/// Where a body touches the ground.
+struct Contact {
+  double ground = 0;         ///< y of the ground: the lowest vertex
+  std::vector<Vec3> support; ///< vertices no more than the tolerance above it, as they stand
+  std::vector<Vec3>
+      patch; ///< corners of their convex hull seen from above, counter-clockwise about y; 1 or 2 if it has no area
+  double margin = 0; ///< distance of the barycentre's foot from the patch's border, below 0 outside
+};
+
+/// Of a body in its attitude. `tolerance` is at least 1e-9 of the largest distance of a vertex from b.
+Contact contact(std::span<const Vec3> vertices, const Vec3& barycentre, double tolerance);
+
+} // namespace cowgpu::physics

@@ -1,0 +1,203 @@
+#include "host/physics/tip.hpp"
+
+#include "host/error.hpp"
+#include "host/physics/tensors.hpp"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cowgpu::physics {
+namespace {
+
+// Lengths below this part of the body are rounding.
+constexpr double negligible = 1e-12;
+
+void append(TipBody& body, const ClosedSurface& surface) {
+  const auto first = static_cast<std::uint32_t>(body.vertices.size());
+  body.vertices.insert(body.vertices.end(), surface.vertices().begin(), surface.vertices().end());
+  for (const Face& face : surface.faces()) body.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+}
+
+double size_of(const TipBody& body) {
+  double size = 0;
+  for (const Vec3& v : body.vertices) size = std::max(size, (v - body.barycentre).norm());
+  return size;
+}
+
+void turn(TipBody& body, const Eigen::Matrix3d& rotation) {
+  if (rotation.isIdentity(0)) return;
+  for (Vec3& v : body.vertices) v = rotation * v;
+  body.barycentre = rotation * body.barycentre;
+  body.inertia = rotation * body.inertia * rotation.transpose();
+}
+
+std::pair<double, double> z_range(const std::vector<Vec3>& points) {
+  const auto [low, high] =
+      std::minmax_element(points.begin(), points.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
+  return {low->z(), high->z()};
+}
+
+// The longest edge, of the triangles with a vertex that touches the ground.
+double contact_spacing(const TipBody& body, double top) {
+  double longest = 0;
+  for (const Face& face : body.faces) {
+    bool touches = false;
+    for (const std::uint32_t v : face) touches = touches || body.vertices[v].y() <= top;
+    for (std::size_t c = 0; touches && c < 3; ++c)
+      longest = std::max(longest, (body.vertices[face[c]] - body.vertices[face[(c + 1) % 3]]).norm());
+  }
+  return longest;
+}
+
+// The support point farthest to a side; of several the one nearest to the barycentre fore and aft.
+Vec3 farthest(const std::vector<Vec3>& support, double sign, const Vec3& barycentre, double noise) {
+  Vec3 best = support.front();
+  for (const Vec3& p : support) {
+    const double more = sign * (p.z() - best.z());
+    const bool nearer = std::abs(p.x() - barycentre.x()) < std::abs(best.x() - barycentre.x());
+    if (more > noise || (more > -noise && nearer)) best = p;
+  }
+  return best;
+}
+
+// The balance about the barycentre in space, with the arm |(p - b) x y|.
+std::optional<double> literal_force(const TipBody& body, const Vec3& p, double sign) {
+  const Vec3 q = (body.barycentre - p).normalized();
+  const auto hit = last_hit(body, p, q);
+  if (!hit) return std::nullopt;
+  const Vec3 n = sign * q.cross(-Vec3::UnitX()).normalized();
+  const double arm = std::hypot(p.x() - body.barycentre.x(), p.z() - body.barycentre.z());
+  return arm / ((p + *hit * q - body.barycentre).norm() + n.y() * arm);
+}
+
+} // namespace
+
+TipBody tip_body(const Body& body) {
+  const MassTensors centred = about_centre(mass_tensors(body));
+  TipBody result;
+  result.mass = centred.mass;
+  result.barycentre = body.centre_of_mass;
+  result.inertia = centred.inertia();
+  append(result, body.surface);
+  for (const Part& part : body.parts) append(result, part.surface);
+  return result;
+}
+
+TipBody tip_body(const TriangleSurface& surface, double mass, std::string& note) {
+  RawMesh mesh;
+  mesh.name = surface.name;
+  mesh.vertices = surface.vertices;
+  mesh.faces = surface.faces;
+  if (volume(mesh.vertices, mesh.faces) < 0) {
+    for (Face& face : mesh.faces) std::swap(face[1], face[2]);
+    note = "inside out; turned";
+  }
+  ClosedSurface closed = ClosedSurface::from(std::move(mesh));
+  const double density = mass / volume(closed);
+  TipBody body = tip_body(make_body(std::move(closed), {}, density));
+  body.smooth = true;
+  return body;
+}
+
+Stance stand(TipBody body, const StandOptions& options) {
+  Stance stance;
+  if (!options.as_modelled) {
+    stance.attitude = settle(body.vertices, body.barycentre);
+    turn(body, stance.attitude.rotation);
+  }
+  const double size = size_of(body);
+  stance.contact = contact(body.vertices, body.barycentre, options.contact_tolerance);
+  const auto [left, right] = z_range(stance.contact.support);
+  double spacing = 0;
+  for (const Vec3& p : stance.contact.support) spacing = std::max(spacing, p.y());
+  spacing = body.smooth ? contact_spacing(body, spacing) : 0;
+  const double slack = body.smooth ? 2 * spacing : 1e-9 * size, z = body.barycentre.z();
+  stance.rolls = body.smooth && right - left <= slack;
+  if (z < left - slack || z > right + slack)
+    throw Error(
+        Fault::cannot_stand,
+        fmt::format("the body cannot stand: its barycentre, at z = {:.6g}, is not between the points that touch "
+                    "the ground, at z = {:.6g} to {:.6g}, so it falls to the {} unpushed{}",
+                    z, left, right, z < left ? "left" : "right",
+                    options.as_modelled ? "; leave --as-modelled out to let it settle, or raise --contact-tolerance"
+                                        : ""));
+  stance.held = stance.contact.margin < -1e-9 * size && !stance.rolls;
+  stance.body = std::move(body);
+  return stance;
+}
+
+std::string name(Side side) {
+  return side == Side::left ? "left" : "right";
+}
+
+double Tipping::balance_angle() const {
+  return std::atan2(offset, height);
+}
+
+double Tipping::slip_force(double mu) const {
+  return mu / (std::abs(direction.z()) + mu * direction.y());
+}
+
+Tipping tipping(const Stance& stance, Side side) {
+  const TipBody& body = stance.body;
+  const double sign = side == Side::right ? 1 : -1, size = size_of(body);
+  const Vec3& b = body.barycentre;
+  Tipping t;
+  t.side = side;
+  t.support = farthest(stance.contact.support, sign, b, negligible * size);
+  t.pivot = {b.x(), t.support.y(), t.support.z()};
+  if (stance.rolls) t.support = t.pivot = {b.x(), stance.contact.ground, b.z()};
+  t.offset = std::max(sign * (t.pivot.z() - b.z()), 0.0);
+  if (t.offset <= negligible * size) t.offset = 0;
+  t.height = b.y() - t.pivot.y();
+  t.radius = std::hypot(t.offset, t.height);
+  if (!(t.height > 0))
+    throw Error(Fault::cannot_stand, "the body cannot stand: its barycentre is not above the ground");
+  const Vec3 q(0, t.height / t.radius, -sign * t.offset / t.radius);
+  t.direction = {0, t.offset / t.radius, sign * t.height / t.radius};
+  const auto hit = last_hit(body, t.pivot, q);
+  if (!hit)
+    throw Error(Fault::cannot_stand, "the ray from the pivot through the barycentre meets no surface, so there is no "
+                                     "point to push at: the barycentre lies outside the body");
+  t.lever = *hit;
+  t.point = t.pivot + t.lever * q;
+  t.force = t.offset / t.lever;
+  const double above = std::abs(t.lever - t.radius), paper = above + t.direction.y() * t.offset;
+  t.force_paper_balance = t.offset == 0 ? 0 : t.offset / paper;
+  t.force_paper_literal = literal_force(body, t.support, sign);
+  t.friction_needed = t.force * std::abs(t.direction.z()) / (1 - t.force * t.direction.y());
+  t.inertia = body.inertia(0, 0) + body.mass * t.radius * t.radius;
+  return t;
+}
+
+Side weaker_side(const Tipping& left, const Tipping& right) {
+  return left.force < right.force * (1 - 1e-12) ? Side::left : Side::right;
+}
+
+std::optional<double> last_hit(const TipBody& body, const Vec3& start, const Vec3& direction) {
+  // Moeller and Trumbore, J. Graphics Tools 2 (1997) 21; triangles are a little wider than they are, so that none is missed
+  // between two.
+  const double reach = negligible * size_of(body);
+  std::optional<double> last;
+  for (const Face& face : body.faces) {
+    const Vec3& a = body.vertices[face[0]];
+    const Vec3 e1 = body.vertices[face[1]] - a, e2 = body.vertices[face[2]] - a;
+    const Vec3 p = direction.cross(e2), s = start - a;
+    const double det = e1.dot(p);
+    if (std::abs(det) <= negligible * e1.norm() * e2.norm()) continue; // seen edge on: its neighbours are met
+    const double u = s.dot(p) / det;
+    if (u < -negligible || u > 1 + negligible) continue;
+    const Vec3 q = s.cross(e1);
+    const double v = direction.dot(q) / det;
+    if (v < -negligible || u + v > 1 + negligible) continue;
+    const double t = e2.dot(q) / det;
+    if (t > reach && (!last || t > *last)) last = t;
+  }
+  return last;
+}
+
+} // namespace cowgpu::physics
