@@ -9,6 +9,7 @@ std::string_view name(Fault fault) {
   case Fault::file_truncated: return "file-truncated";
   case Fault::file_format: return "file-format";
   case Fault::mesh_missing: return "mesh-missing";
+  case Fault::page_missing: return "page-missing";
   case Fault::mesh_empty: return "mesh-empty";
   case Fault::mesh_not_finite: return "mesh-not-finite";
   case Fault::mesh_index_range: return "mesh-index-range";
@@ -47,6 +48,7 @@ int exit_code(Fault fault) {
   case Fault::no_fp64:
   case Fault::device_failed:
   case Fault::device_lost: return 4;
+  case Fault::page_missing:
   case Fault::cannot_read:
   case Fault::cannot_write: return 5;
   case Fault::interrupted: return 130;

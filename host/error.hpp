@@ -14,6 +14,7 @@ enum class Fault {
   file_truncated,       ///< a file that ends before what its header announces
   file_format,          ///< a file of no format known here
   mesh_missing,         ///< a named mesh that is not on this machine
+  page_missing,         ///< the page of reports, which is not built on this machine
   mesh_empty,           ///< no face, or no vertex
   mesh_not_finite,      ///< NaN or infinity among the coordinates
   mesh_index_range,     ///< a face names a vertex that does not exist

@@ -31,6 +31,10 @@ install(FILES ${PROJECT_BINARY_DIR}/generated/cowgpu.bash RENAME cowgpu
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/meshes ${PROJECT_SOURCE_DIR}/data/schemas
   DESTINATION ${CMAKE_INSTALL_DATADIR}/cowgpu COMPONENT program FILES_MATCHING PATTERN "*.md" PATTERN "*.json")
 
+# The page of reports, where it was built.
+install(FILES ${PROJECT_BINARY_DIR}/page/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/cowgpu/page
+  COMPONENT program OPTIONAL)
+
 install(TARGETS libcowgpu EXPORT cowgpu-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 # Headers of what a caller uses; those of single paths and of third libraries stay inside.

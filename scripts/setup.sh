@@ -1,6 +1,6 @@
 # shellcheck shell=bash
 # Packages, configuration and build, shared by ./cowgpu and ./check, which source this file with `root` set to the
-# project's folder. Everything said here goes to stderr; what fails here ends with exit code 5, an interrupt with 130.
+# project's folder, and `page` to `required` or `wanted` where the page of reports is to be built too. Everything said here goes to stderr; what fails here ends with exit code 5, an interrupt with 130.
 
 folder=$root/build/release    # where the presets `release` and `check` build
 log=$root/build/setup.log     # what the last apt-get, cmake and ninja printed
@@ -163,6 +163,16 @@ build() {
   NINJA_STATUS='[%f/%t] ' ninja -C "$folder" "${@:2}" </dev/null 2>&1 | progress >>"$log"
 }
 
+# build_page: the page of reports, with the node and npm that are there, else with Debian's. It needs npm's registry once.
+build_page() {
+  local lacking=''
+  if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
+    ! command -v apt-get >/dev/null || lacking=$(missing $(packages page))
+    [[ ! $lacking ]] || (install $lacking) || return 1
+  fi
+  ninja -C "$folder" page </dev/null >>"$log" 2>&1
+}
+
 # set_up PRESET GROUPS TARGET...: one at a time, by a lock that ends with the last process that holds it.
 set_up() {
   local lock installed='' half='' groups=$2 arguments=("$1" "${@:3}")
@@ -183,6 +193,10 @@ set_up() {
     if [[ ! $installed ]] || ! build "${arguments[@]}"; then
       fail_with_log "the build failed"
     fi
+  fi
+  if [[ ${page-} ]] && ! build_page; then
+    [[ $page != required ]] || fail_with_log "the page of reports could not be built"
+    say "the page of reports could not be built (see $log): what needs it is left out"
   fi
   exec {lock}>&-
   trap - INT

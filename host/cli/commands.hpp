@@ -41,6 +41,7 @@ void add_convert(CLI::App& app, Common& common);
 void add_diff(CLI::App& app, Common& common);
 void add_map(CLI::App& app, Common& common);
 void add_reconstruct(CLI::App& app, Common& common);
+void add_report(CLI::App& app, Common& common);
 void add_inflate(CLI::App& app, Common& common);
 void add_distance(CLI::App& app, Common& common);
 void add_streamlines(CLI::App& app, Common& common);

@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   cli::add_diff(app, common);
   cli::add_map(app, common);
   cli::add_reconstruct(app, common);
+  cli::add_report(app, common);
   cli::add_inflate(app, common);
   cli::add_distance(app, common);
   cli::add_streamlines(app, common);
