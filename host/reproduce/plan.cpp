@@ -45,6 +45,20 @@ Plan plan(const std::string& mesh, bool papers_mesh, const std::string& device) 
        "data/stretch.txt",
        {"data/stretch.json"},
        5},
+      {"tip",
+       "what tips it, by order",
+       Words{"tip", mesh, "--of", "harmonic", "--order", "0..7,full"} + body + on,
+       "data/tip.json",
+       {},
+       10},
+      {"drop",
+       "whether it lands on its feet",
+       Words{"drop", mesh, "--height", "1km", "--attitude", "on-side"} + body,
+       "data/drop.json",
+       {},
+       1},
+      {"tides", "what holds it in orbit", Words{"tides", mesh, "--orbit", "6771km"} + body, "data/tides.json", {}, 1},
+      {"errata", "what is wrong in the paper", {"errata", "--json"}, "data/errata.json", {}, 1.5},
   };
   return plan;
 }

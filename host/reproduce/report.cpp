@@ -110,9 +110,12 @@ void add_errata(const Reproduction& all, std::string& text) {
   if (list == all.errata.end() || !list->is_array()) return;
   text += "\n## Errata\n\n";
   for (const auto& entry : *list) {
-    text += fmt::format("{}. The paper: {} Right: {}", entry.value("number", 0), entry.value("paper", ""),
-                        entry.value("right", ""));
-    text += "\n";
+    text += fmt::format("{}. *The paper:* {}. *Right:* {}. {}.\n", entry.value("number", 0), entry.value("paper", ""),
+                        entry.value("right", ""), entry.value("why", ""));
+    for (const auto& number : entry.value("numbers", nlohmann::json::array()))
+      if (number.value("right", nlohmann::json()).is_number() && number.value("paper", nlohmann::json()).is_number())
+        text += fmt::format("   - {}: {:.6g}, in the paper {:.6g}\n", number.value("quantity", ""),
+                            number["right"].get<double>(), number["paper"].get<double>());
   }
 }
 
