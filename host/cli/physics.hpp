@@ -43,6 +43,17 @@ struct PlacedTensors {
 };
 PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& options);
 
+/// An input's moments about its origin, in SI where units are stated.
+struct PlacedMoments {
+  Coefficients moments;
+  bool metric = false;
+};
+
+/// To degree `lmax`, or what a file holds of it. Throws Error(bad_argument) for --charge with a file in kilograms; what
+/// mass_moments() throws.
+PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& options, int lmax, Backend& backend,
+                             Monitor& monitor);
+
 /// Name, hash and notes of an input, for the head of a report.
 physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options);
 
@@ -59,6 +70,7 @@ struct Application {
 };
 
 Solve add_tensors(CLI::App& command, Common& common);
+Solve add_potential(CLI::App& command, Common& common);
 Solve add_radiate(CLI::App& command, Common& common);
 
 } // namespace cowgpu::cli
