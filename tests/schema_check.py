@@ -267,6 +267,20 @@ with tempfile.TemporaryDirectory() as folder:
         assert ("octupole_power_W" in found) is ("--octupole" in arguments)
 found["omega_after"] = "1e0"
 refuses(radiate, found, "an exponent among all digits")
+potential = load_schema("potential")
+for arguments in (
+    ["builtin:cow@1", "--at", "3,0,0"],
+    ["builtin:cow@1", "--sphere", "2R", "--resolution", "4", "--length", "2m", "--density", "1uC/m3", "--charge"],
+    ["builtin:box", "--plane", "z,0.1,2,9", "--inside", "exact", "--derivatives", "1"],
+    ["builtin:cow@1", "--recipe", "paper", "--at", "3,0,0", "--derivatives", "0"],
+    ["builtin:box:1,2,3", "--errors", "--orders", "0,4", "--distances", "1,3"],
+):
+    found = output_of("potential", *arguments, "--device", "cpu", "--json")
+    jsonschema.validate(found, potential)
+    for table in ("points", "errors", "good_from"):
+        assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
+found["law"] = "levity"
+refuses(potential, found, "a law of no kind")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 inspect = load_schema("inspect")
 with tempfile.TemporaryDirectory() as folder:
@@ -286,4 +300,4 @@ with tempfile.TemporaryDirectory() as folder:
     assert whole["inscribed_radius"] < whole["brillouin_radius"]
     whole["self_intersections"]["listed"] = [{"faces": [1], "kind": "crossing", "place": [0, 0, 0]}]
     refuses(inspect, whole, "a pair of one face")
-print("53 documents and 8 files passed")
+print("58 documents and 8 files passed")

@@ -6,14 +6,14 @@
 
 namespace cowgpu {
 namespace {
-constexpr double farthest_shown = 100, least_shown = 1e-15;
+constexpr double farthest_shown = 100, least_shown = 1e-14;
 }
 
 plot::Plot series_errors_plot(const physics::SeriesErrors& errors, const std::string& title) {
   plot::Plot plot;
   plot.title = title;
   plot.x = {"distance", "Brillouin radii", plot::Scale::logarithmic, 1, farthest_shown};
-  plot.y = {"largest relative error", "", plot::Scale::logarithmic};
+  plot.y = {"largest error of potential or acceleration", "relative", plot::Scale::logarithmic};
   plot.y.low = least_shown;
   for (std::size_t i = 0; i < errors.good_from.size(); ++i) {
     plot::Series line;
@@ -24,7 +24,7 @@ plot::Plot series_errors_plot(const physics::SeriesErrors& errors, const std::st
       line.y.push_back(errors.worst[i][k]);
       if (errors.worst[i][k] < least_shown) break;
     }
-    line.dash = i < 6 ? plot::Dash::solid : plot::Dash::dashed;
+    line.dash = i % 2 ? plot::Dash::dashed : plot::Dash::solid; // 0 and 1 are alike about the centre of mass
     plot.series.push_back(line);
   }
   for (const double tolerance : physics::good_tolerances) plot.lines.push_back({false, tolerance, ""});
