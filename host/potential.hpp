@@ -18,6 +18,9 @@ inline constexpr int largest_potential_degree = 1536;
 /// Of PotentialProblem::cut_off: an eighth of a double's rounding unit.
 inline constexpr double default_potential_cut_off = 0x1p-56;
 
+/// In R: a point on the sphere that rounding has moved inside is outside.
+inline constexpr double nearest_potential = 1 - 1e-9;
+
 /// What is asked for: V alone, its gradient too, its second derivatives too.
 enum class Derivatives { none = 0, first = 1, second = 2 };
 

@@ -30,8 +30,9 @@ void main() {
   const uint end = min(push.end, top + 1);
 
   const uint from = POTENTIAL_INPUTS * lane, to = (2 + SETS) * lane;
-  const dvec4 x = points[from], y = points[from + 1], z = points[from + 2], q = points[from + 3];
-  dvec4 start_re = points[from + 4], start_im = dvec4(0);
+  const dvec4 x = points[from], y = points[from + 1], z = points[from + 2], z_rest = points[from + 3];
+  const dvec4 q = points[from + 4];
+  dvec4 start_re = points[from + 5], start_im = dvec4(0);
   dvec4 s0 = dvec4(0), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
   uint count = 0;
   if (push.first > 0) {
@@ -78,8 +79,9 @@ void main() {
         s7 += c7.x * re + c7.y * im;
         s8 += c8.x * re + c8.y * im;
       }
-      const dvec4 a = factors.x * z, b = factors.y * q;
-      const dvec4 next_re = a * re - b * last_re, next_im = a * im - b * last_im;
+      const dvec4 b = factors.y * q;
+      const dvec4 next_re = factors.x * (z * re + z_rest * re) - b * last_re;
+      const dvec4 next_im = factors.x * (z * im + z_rest * im) - b * last_im;
       last_re = re;
       last_im = im;
       re = next_re;

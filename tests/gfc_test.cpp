@@ -1,4 +1,5 @@
 #include "host/io/gfc.hpp"
+#include "host/physics/polyhedron.hpp"
 
 #include "host/io/coefficient_file.hpp"
 #include "host/io/mesh_source.hpp"
@@ -7,7 +8,6 @@
 #include "tests/support/fields.hpp"
 #include "tests/support/gravity_model.hpp"
 #include "tests/support/meshes.hpp"
-#include "tests/support/polyhedron_potential.hpp"
 #include "tests/support/run_program.hpp"
 
 #include <catch2/catch.hpp>
@@ -22,6 +22,7 @@ using namespace cowgpu;
 using namespace cowgpu::test;
 using Catch::Contains;
 using Catch::StartsWith;
+using physics::LongVec3;
 
 namespace {
 
@@ -60,6 +61,8 @@ void check_potential(const std::string& mesh_name, int lmax) {
   REQUIRE((text >> kind >> x >> y >> z));
   CHECK(kind == "(given)");
   const RawMesh mesh = load_mesh(mesh_name);
+  const physics::Polyhedron polyhedron(mesh.vertices, mesh.faces);
+  physics::Polyhedron::Scratch scratch;
   const long double radius = std::stold(model.head.at("radius"));
   const long double g = std::stold(model.comments.at("gravitational_constant"));
   CHECK(model.comments.at("mesh_sha256") == mesh.sha256);
@@ -69,7 +72,7 @@ void check_potential(const std::string& mesh_name, int lmax) {
     for (int i = 0; i < 8; ++i) {
       const LongVec3 direction = Vec3(normal(random), normal(random), normal(random)).normalized().cast<long double>();
       const LongVec3 at = direction * (far * radius);
-      const long double exact = 2.5L * g * polyhedron_gravity(mesh, at + Vec3(x, y, z).cast<long double>()).potential;
+      const long double exact = 2.5L * g * polyhedron.at(at + Vec3(x, y, z).cast<long double>(), scratch).value;
       const long double error = std::fabs(model.potential(at.x(), at.y(), at.z()) / exact - 1);
       INFO(mesh_name << " to degree " << lmax << " at " << double(far) << " R: " << double(error));
       CHECK(error <= std::max(1e-12L, std::pow(1 / far, (long double)(lmax + 1))));

@@ -290,6 +290,20 @@ errata, found = load_schema("errata"), output_of("errata", "--json")
 jsonschema.validate(found, errata)
 found["errata"][0]["why"] = ""
 refuses(errata, found, "an erratum without a reason")
+potential = load_schema("potential")
+for arguments in (
+    ["builtin:cow@1", "--at", "3,0,0"],
+    ["builtin:cow@1", "--sphere", "2R", "--resolution", "4", "--length", "2m", "--density", "1uC/m3", "--charge"],
+    ["builtin:box", "--plane", "z,0.1,2,9", "--inside", "exact", "--derivatives", "1"],
+    ["builtin:cow@1", "--recipe", "paper", "--at", "3,0,0", "--derivatives", "0"],
+    ["builtin:box:1,2,3", "--errors", "--orders", "0,4", "--distances", "1,3"],
+):
+    found = output_of("potential", *arguments, "--device", "cpu", "--json")
+    jsonschema.validate(found, potential)
+    for table in ("points", "errors", "good_from"):
+        assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
+found["law"] = "levity"
+refuses(potential, found, "a law of no kind")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 reproduce = load_schema("reproduce")
 with tempfile.TemporaryDirectory() as folder:

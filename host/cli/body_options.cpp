@@ -61,8 +61,8 @@ Placement parse_placement(const BodyOptions& options) {
   return placement;
 }
 
-double parse_density(std::string_view option, std::string_view text, bool metric) {
-  const Measure density = parse_measure(option, text, Dimension::density);
+double parse_density(std::string_view option, std::string_view text, bool metric, bool charge) {
+  const Measure density = parse_measure(option, text, charge ? Dimension::charge_density : Dimension::density);
   if (density.has_unit && !metric)
     throw Error(
         Fault::bad_argument,
@@ -92,9 +92,9 @@ PartChoice parse_part(const std::string& text) {
   return {text.substr(0, sign), text.substr(sign + 1)};
 }
 
-Part load_part(const std::string& text, const Placement& placement) {
+Part load_part(const std::string& text, const Placement& placement, bool charge) {
   const PartChoice choice = parse_part(text);
-  const double density = parse_density("--part " + choice.mesh, choice.density, placement.metric);
+  const double density = parse_density("--part " + choice.mesh, choice.density, placement.metric, charge);
   try {
     return Part(load_placed(choice.mesh, {}, placement), density);
   } catch (const Error& error) {
@@ -147,14 +147,14 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
 Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
   const OriginChoice origin = parse_origin(options.origin);
   Placement placement = parse_placement(options);
-  const double density = parse_density("--density", options.density, placement.metric);
+  const double density = parse_density("--density", options.density, placement.metric, options.charge);
   RawMesh mesh = load_mended(options.mesh, options.mending);
   if (!options.length.empty()) placement.scale = metres_per_unit(options, mesh);
   place(mesh, placement);
   ClosedSurface surface = ClosedSurface::from(std::move(mesh));
   notes.insert(notes.end(), surface.mesh().notes.begin(), surface.mesh().notes.end());
   std::vector<Part> parts;
-  for (const std::string& text : options.parts) parts.push_back(load_part(text, placement));
+  for (const std::string& text : options.parts) parts.push_back(load_part(text, placement, options.charge));
   for (const Part& part : parts)
     for (const std::string& note : part.surface.mesh().notes)
       notes.push_back(fmt::format("{}: {}", part.surface.mesh().name, note));
@@ -165,7 +165,8 @@ Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
 
 StatedUnits stated_units(const BodyOptions& options) {
   const Placement placement = parse_placement(options);
-  return {placement.scale, parse_density("--density", options.density, placement.metric), placement.metric};
+  return {placement.scale, parse_density("--density", options.density, placement.metric, options.charge),
+          placement.metric};
 }
 
 std::vector<std::string> input_files(const BodyOptions& options) {

@@ -17,6 +17,7 @@ struct BodyOptions {
   std::string origin = "com";
   std::string density = "1";
   std::string length_unit, length, axes, rotate;
+  bool charge = false;            ///< densities are of charge: C/m3 where metric
   std::vector<std::string> parts; ///< FILE=DENSITY each
   Mending mending;                ///< of MESH, before it is placed
 };

@@ -3,14 +3,17 @@
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/physics/paper.hpp"
+#include "host/physics/potential.hpp"
 #include "host/report/findings_report.hpp"
 #include "host/report/json_parts.hpp"
+#include "host/spectrum/verify.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 
 namespace cowgpu::cli {
@@ -23,6 +26,13 @@ constexpr std::array applications = {
                 "          cowgpu expand benchmark --lmax 2 -o cow.json && cowgpu tensors cow.json --json\n"
                 "          cowgpu tensors benchmark --recipe paper",
                 add_tensors},
+    Application{"potential",
+                "Potential, acceleration and gravity gradient outside a body, and how good its multipoles are there",
+                "Examples: cowgpu potential benchmark --length 2.5m --density 1g/cm3 --at 3,0,0\n"
+                "          cowgpu potential benchmark --sphere 1.5R --resolution 61 -o sphere.nc\n"
+                "          cowgpu potential benchmark --plane z,0,1,101 --inside exact -o plane.csv\n"
+                "          cowgpu potential benchmark --errors --plot errors.svg",
+                add_potential},
     Application{"radiate", "Gravitational waves from a body that turns: their power, and how long until it has stopped",
                 "Examples: cowgpu radiate benchmark --length 2.5m --density 1g/cm3 --axis y --omega 1rad/s\n"
                 "          cowgpu radiate benchmark --recipe paper",
@@ -179,6 +189,36 @@ physics::MassiveBody massive_body(const PhysicsInput& input, const PlacedTensors
     return physics::massive_body(*input.coefficients, placed.tensors, *placed.unit_m, *placed.unit_kg, order);
   ConsoleMonitor monitor(ProgressStyle::none);
   return physics::massive_body(*input.body, order, monitor);
+}
+
+PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& options, int lmax, Backend& backend,
+                             Monitor& monitor) {
+  PlacedMoments placed;
+  if (input.body) {
+    placed.moments = mass_moments(mass_problems(*input.body, lmax, default_cut_off), backend, monitor);
+    placed.metric = input.body->placement.metric;
+    return placed;
+  }
+  const CoefficientSet& set = *input.coefficients;
+  const StatedUnits stated = stated_units(options.body);
+  placed.moments = physics::mass_moments(set, lmax);
+  placed.metric = set.length_unit == "m" && set.mass_unit == "kg";
+  if (placed.metric && options.body.charge)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--charge: {} holds a mass in kilograms; expand the body without units, and state them here "
+                    "with --length-unit and --density",
+                    options.body.mesh));
+  if (placed.metric && stated.metric)
+    throw Error(Fault::bad_argument,
+                fmt::format("--length-unit: {} is in metres and kilograms already", options.body.mesh));
+  if (placed.metric || !stated.metric) return placed;
+  const double amount = stated.density / set.density.value_or(1) * std::pow(stated.metres, 3);
+  placed.metric = true;
+  placed.moments.origin *= stated.metres;
+  placed.moments.reference_radius *= stated.metres;
+  for (auto& q : placed.moments.values) q *= amount;
+  return placed;
 }
 
 physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options) {

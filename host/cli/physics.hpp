@@ -56,6 +56,16 @@ PlacedTensors metric_tensors(const PhysicsInput& input, const PhysicsOptions& op
 
 /// Its body with degrees to `order`, for a point mass outside: of a mesh its own exact moments, else those of the file.
 physics::MassiveBody massive_body(const PhysicsInput& input, const PlacedTensors& placed, int order);
+/// An input's moments about its origin, in SI where units are stated.
+struct PlacedMoments {
+  Coefficients moments;
+  bool metric = false;
+};
+
+/// To degree `lmax`, or what a file holds of it. Throws Error(bad_argument) for --charge with a file in kilograms; what
+/// mass_moments() throws.
+PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& options, int lmax, Backend& backend,
+                             Monitor& monitor);
 
 /// Name, hash and notes of an input, for the head of a report.
 physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options);
@@ -73,6 +83,7 @@ struct Application {
 };
 
 Solve add_tensors(CLI::App& command, Common& common);
+Solve add_potential(CLI::App& command, Common& common);
 Solve add_radiate(CLI::App& command, Common& common);
 Solve add_tides(CLI::App& command, Common& common);
 Solve add_drop(CLI::App& command, Common& common);

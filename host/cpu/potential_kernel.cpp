@@ -16,7 +16,8 @@ HWY_INLINE void sum_lanes(const plan::PotentialSeries& series, const plan::Poten
                           int top, double* sums) {
   constexpr std::size_t stride = 2 + 2 * Sets;
   const V x = hn::LoadU(d, &points.x[first]), y = hn::LoadU(d, &points.y[first]);
-  const V z = hn::LoadU(d, &points.z[first]), q = hn::LoadU(d, &points.q[first]);
+  const V z = hn::LoadU(d, &points.z[first]), z_rest = hn::LoadU(d, &points.z_rest[first]);
+  const V q = hn::LoadU(d, &points.q[first]);
   V start_re = hn::LoadU(d, &points.start[first]), start_im = hn::Zero(d);
   V sum[Sets];
   for (std::size_t s = 0; s < Sets; ++s) sum[s] = hn::Zero(d);
@@ -29,8 +30,10 @@ HWY_INLINE void sum_lanes(const plan::PotentialSeries& series, const plan::Poten
         sum[s] = hn::MulAdd(hn::Set(d, entry[2 + 2 * s]), re, sum[s]);
         sum[s] = hn::MulAdd(hn::Set(d, entry[3 + 2 * s]), im, sum[s]);
       }
-      const V a = hn::Mul(hn::Set(d, entry[0]), z), b = hn::Mul(hn::Set(d, entry[1]), q);
-      const V next_re = hn::NegMulAdd(b, last_re, hn::Mul(a, re)), next_im = hn::NegMulAdd(b, last_im, hn::Mul(a, im));
+      const V a = hn::Set(d, entry[0]), b = hn::Mul(hn::Set(d, entry[1]), q);
+      const V z_re = hn::MulAdd(z, re, hn::Mul(z_rest, re)), z_im = hn::MulAdd(z, im, hn::Mul(z_rest, im));
+      const V next_re = hn::NegMulAdd(b, last_re, hn::Mul(a, z_re));
+      const V next_im = hn::NegMulAdd(b, last_im, hn::Mul(a, z_im));
       last_re = re;
       last_im = im;
       re = next_re;

@@ -20,10 +20,10 @@ struct Batch {
 
 Batch batch_of(const plan::PotentialPoints& points, std::size_t first, std::size_t lanes) {
   Batch batch;
-  batch.points.reserve(lanes * 5 * per_lane);
+  batch.points.reserve(lanes * 6 * per_lane);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const std::size_t at = first + lane * per_lane;
-    for (const auto* values : {&points.x, &points.y, &points.z, &points.q, &points.start})
+    for (const auto* values : {&points.x, &points.y, &points.z, &points.z_rest, &points.q, &points.start})
       batch.points.insert(batch.points.end(), values->begin() + std::ptrdiff_t(at),
                           values->begin() + std::ptrdiff_t(at + per_lane));
     batch.tops.push_back(std::uint32_t(points.tops[at / plan::PotentialPoints::block]));
@@ -81,7 +81,7 @@ MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivati
   const std::uint64_t lanes = std::min<std::uint64_t>(points / per_lane + plan::PotentialPoints::block, 1U << 15);
   MemoryNeed need;
   need.device = engine::Potential::device_bytes(std::uint32_t(lmax + int(derivatives)), sets, lanes);
-  need.host = plan::potential_bytes(points, lmax, derivatives) + need.device + lanes * per_lane * 8 * (7 + 2 * sets);
+  need.host = plan::potential_bytes(points, lmax, derivatives) + need.device + lanes * per_lane * 8 * (8 + 2 * sets);
   return need;
 }
 

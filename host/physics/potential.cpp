@@ -70,6 +70,11 @@ public:
     return exact_field(body_, points, Derivatives::first, threads_, step).field;
   }
 
+  // The polyhedron loses digits like the square of the distance.
+  PotentialField truth(double distance) {
+    return distance <= truth_from ? exact(distance) : series(distance, moments_.lmax);
+  }
+
   PotentialField series(double distance, int order) {
     StepMonitor step(monitor_, std::min(1.0, done_ / steps_), 0);
     return backend_.potential({moments_, relative(distance), order, Derivatives::first}, step);
@@ -158,19 +163,20 @@ SeriesErrors series_errors(const Body& body, const std::vector<int>& orders, con
                         double(distances.size()) + steps_per_decade + 1);
   result.directions = comparison.count();
   for (const double d : distances) {
-    const PotentialField truth = comparison.exact(d);
+    const PotentialField truth = comparison.truth(d);
     for (const int order : orders) result.rows.push_back(comparison.error(d, order, truth));
   }
 
-  std::vector<double> ladder;
+  std::vector<double>& ladder = result.ladder;
   const int steps = int(std::lround(std::log10(farthest_good))) * steps_per_decade;
-  for (int k = 0; k <= steps; ++k) ladder.push_back(std::pow(10.0, double(k) / steps_per_decade));
-  std::vector<std::vector<double>> errors(orders.size());
+  for (int k = 0; k <= steps; ++k)
+    ladder.push_back(k == steps_per_decade ? truth_from : std::pow(10.0, double(k) / steps_per_decade));
+  std::vector<std::vector<double>>& errors = result.worst;
+  errors.resize(orders.size());
   for (int k = 0; k <= steps; ++k) {
     const double d = ladder[std::size_t(k)];
     check_stop(monitor);
-    const bool by_polyhedron = k <= steps_per_decade;
-    const PotentialField truth = by_polyhedron ? comparison.exact(d) : comparison.series(d, result.truth_degree);
+    const PotentialField truth = comparison.truth(d);
     if (k == steps_per_decade) {
       const SeriesError e = comparison.error(d, result.truth_degree, truth);
       result.truth_error = std::max(e.potential_max, e.acceleration_max);

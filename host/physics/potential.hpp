@@ -55,8 +55,10 @@ inline constexpr double farthest_good = 1e6;
 struct SeriesErrors {
   std::vector<SeriesError> rows; ///< distance by distance, order by order
   std::vector<GoodFrom> good_from;
-  std::size_t directions = 0; ///< of the sphere
-  int truth_degree = 0;       ///< beyond `truth_from` radii the truth of good_from is the series to this degree,
+  std::vector<double> ladder;             ///< distances that good_from was measured at
+  std::vector<std::vector<double>> worst; ///< [order][of the ladder]: the larger of both largest errors
+  std::size_t directions = 0;             ///< of the sphere
+  int truth_degree = 0; ///< beyond `truth_from` radii the truth is the series to this degree,
   double truth_from = 0;
   double truth_error = 0; ///< which there differs so much from the polyhedron
 };

@@ -16,7 +16,6 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double pi = std::numbers::pi;
-constexpr double nearest = 1 - 1e-9; // in R: a point of the sphere that rounding has moved inside
 
 // Coefficients of a real series in J_lm, those of m < 0 following from a_l,-m = (-1)^m conj(a_lm).
 struct Set {
@@ -165,7 +164,7 @@ PotentialPoints potential_points(const PotentialProblem& problem, const Potentia
                   fmt::format("point {} ({}, {}, {}) is not finite, or farther than 1e150 radii of "
                               "{}",
                               i, p[0], p[1], p[2], radius));
-    if (!(r2 >= nearest * nearest))
+    if (!(r2 >= nearest_potential * nearest_potential))
       throw Error(Fault::point_inside,
                   fmt::format("point {} is {} from the origin of the moments, {} inside their sphere of radius {}: the "
                               "series is the potential outside it alone",
@@ -179,14 +178,19 @@ PotentialPoints potential_points(const PotentialProblem& problem, const Potentia
                    [&](std::uint32_t a, std::uint32_t b) { return ratio2[a] > ratio2[b]; });
   constexpr std::size_t block = PotentialPoints::block;
   const std::size_t padded = (count + block - 1) / block * block;
-  for (auto* values : {&points.x, &points.y, &points.z, &points.q, &points.start}) values->assign(padded, 0);
+  for (auto* values : {&points.x, &points.y, &points.z, &points.z_rest, &points.q, &points.start})
+    values->assign(padded, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t from = points.order[i];
-    const Vec3 u = problem.points[from] / radius / ratio2[from];
+    const Vec3& p = problem.points[from];
+    const Vec3 u = p / radius / ratio2[from];
     points.x[i] = u.x();
     points.y[i] = u.y();
-    points.z[i] = u.z();
     points.q[i] = 1 / ratio2[from];
+    const long double cosine = p.z() / p.cast<long double>().norm();
+    const long double z = cosine * std::sqrt((long double)(points.q[i]));
+    points.z[i] = double(z);
+    points.z_rest[i] = double(z - points.z[i]);
     points.start[i] = 1 / std::sqrt(4 * pi * ratio2[from]);
   }
   for (std::size_t begin = 0; begin < count; begin += block) {
@@ -220,7 +224,7 @@ std::uint64_t potential_bytes(std::uint64_t points, int lmax, Derivatives deriva
   const std::uint64_t sets = potential_sets(derivatives), entries = Coefficients::count(lmax + int(derivatives));
   const std::uint64_t padded = points + PotentialPoints::block;
   // The table beside the sets it is made from; sums and field.
-  return entries * (16 + 32 * sets) + padded * (8 + 4 + 40 + 8 * sets + 8 * (1 + 3 + 6));
+  return entries * (16 + 32 * sets) + padded * (8 + 4 + 48 + 8 * sets + 8 * (1 + 3 + 6));
 }
 
 } // namespace cowgpu::plan

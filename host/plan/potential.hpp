@@ -9,6 +9,8 @@
 //   J_00 = sqrt(q / 4pi),  J_{m+1,m+1} = -sqrt((2m+3)/(2m+2)) (x' + i y') J_mm,
 //   J_{l+1,m} = a z' J_lm - b q J_{l-1,m},   a = sqrt((2l+1)(2l+3) / ((l+1)^2 - m^2)),
 //   b = a sqrt((l^2 - m^2) / ((2l-1)(2l+1))).
+// Next to the axis J_lm answers an error of cos(theta) with l^2 times as much, so that z' is held in two doubles, whose
+// quotient with sqrt(q) is right to 2^-64.
 // Outside, |J_lm| is at most sqrt((2l+1)/4pi). J_mm underflows next to the axis: |J_mm| < 1e-307 means sin(theta) <
 // 1e-307^(1/m), and order m counts from a degree near m / sin(theta) on; the least over m of that degree is 707 e = 1900.
 #pragma once
@@ -46,9 +48,9 @@ PotentialSeries potential_series(const PotentialProblem& problem);
 struct PotentialPoints {
   static constexpr std::size_t block = 64;
 
-  std::vector<std::uint32_t> order;      ///< [i]: the problem's point that stands at i
-  std::vector<double> x, y, z, q, start; ///< x', y', z', q, J_00; a multiple of `block` of each
-  std::vector<int> tops;                 ///< of each block: the degree up to which its points need the series
+  std::vector<std::uint32_t> order;              ///< [i]: the problem's point that stands at i
+  std::vector<double> x, y, z, z_rest, q, start; ///< x', y', z' in two parts, q, J_00; a multiple of `block`
+  std::vector<int> tops;                         ///< of each block: the degree up to which its points need the series
   std::size_t padded() const { return x.size(); }
   std::size_t blocks() const { return tops.size(); }
   /// Entries of the table that the points of block b look at.

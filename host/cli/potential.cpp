@@ -1,0 +1,445 @@
+#include "host/cli/physics.hpp"
+
+#include "host/cli/order_list.hpp"
+#include "host/cli/potential_places.hpp"
+#include "host/error.hpp"
+#include "host/io/potential_file.hpp"
+#include "host/physics/polyhedron.hpp"
+#include "host/physics/potential.hpp"
+#include "host/report/potential_plot.hpp"
+#include "host/report/result.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+namespace cowgpu::cli {
+namespace {
+
+using namespace physics;
+
+constexpr int usual_degree = 32;
+constexpr std::size_t most_shown = 200; // points on the screen and in the JSON
+
+struct Options {
+  PlaceOptions places;
+  int lmax = -1, derivatives = 2;
+  bool exact = false, charge = false, errors = false;
+  std::string inside = "refuse", output, distances = "1,1.1,1.5,2,3,5,10", plot;
+  std::vector<std::string> orders = {"0,1,2,4,8,16,32"};
+};
+
+struct Units {
+  FieldLaw law;
+  std::string length, potential, force, tensor;
+};
+
+Units units_of(bool metric, bool charge) {
+  const std::string g = charge ? "k" : "G";
+  Units units;
+  units.law.charge = charge;
+  if (!metric) {
+    units.length = std::string(mesh_length_unit);
+    units.potential = g + " * density * length^2";
+    units.force = g + " * density * length";
+    units.tensor = g + " * density";
+    return units;
+  }
+  units.length = "m";
+  units.law.constant = charge ? coulomb_constant_si : gravitational_constant_si;
+  units.potential = charge ? "V" : "J/kg";
+  units.force = charge ? "V/m" : "m/s^2";
+  units.tensor = charge ? "V/m^2" : "1/s^2";
+  return units;
+}
+
+std::vector<double> parse_distances(const std::string& text) {
+  std::vector<double> distances;
+  std::istringstream words(text + ",");
+  for (std::string word; std::getline(words, word, ',');) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !(value >= 1) || !(value <= farthest_good))
+      throw Error(
+          Fault::bad_argument,
+          fmt::format("--distances {}: \"{}\" is none; they are numbers from 1 to {} between commas, in radii of "
+                      "the sphere that holds the body",
+                      text, word, farthest_good));
+    distances.push_back(value);
+  }
+  return distances;
+}
+
+// A body's field at its places, as `potential` needs it.
+struct Solved {
+  Units units;
+  PlaceFrame frame;
+  Places places;
+  int lmax = 0;
+  PotentialField field; // V; later in the units
+  std::vector<std::uint8_t> exact;
+  std::vector<double> density; // where exact
+  std::size_t exact_points = 0;
+};
+
+[[noreturn]] void refuse_inside(const Solved& s, const std::vector<std::size_t>& inside, bool has_mesh) {
+  const Vec3& p = s.places.points[inside.front()];
+  const double r = (p - s.frame.origin).norm();
+  throw Error(
+      Fault::point_inside,
+      fmt::format("{}: point {} of {} ({:.6g}, {:.6g}, {:.6g}) is {:.6g} from the body's origin and {:.6g} inside "
+                  "the sphere of radius {:.6g} that holds it, where the series is not the potential{}; {}",
+                  s.places.name, inside.front() + 1, s.places.points.size(), p[0], p[1], p[2], r, s.frame.radius - r,
+                  s.frame.radius, inside.size() > 1 ? fmt::format(" ({} points are)", inside.size()) : "",
+                  has_mesh ? "--inside exact takes the polyhedron there"
+                           : "move it outside, or take the mesh with --inside exact"));
+}
+
+void take(const PotentialField& from, const std::vector<std::size_t>& to, PotentialField& field) {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    field.value[to[i]] = from.value[i];
+    if (!from.gradient.empty()) field.gradient[to[i]] = from.gradient[i];
+    if (!from.hessian.empty()) field.hessian[to[i]] = from.hessian[i];
+  }
+}
+
+std::vector<Vec3> chosen(const std::vector<Vec3>& points, const std::vector<std::size_t>& which, const Vec3& origin) {
+  std::vector<Vec3> some;
+  for (const std::size_t i : which) some.push_back(points[i] - origin);
+  return some;
+}
+
+void compute(const PhysicsInput& input, const Options& options, const Coefficients& moments, Backend& backend,
+             unsigned threads, Monitor& monitor, Solved& s) {
+  const auto derivatives = Derivatives(options.derivatives);
+  const std::size_t count = s.places.points.size();
+  std::vector<std::size_t> inside, outside;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double r = (s.places.points[i] - s.frame.origin).norm();
+    const bool by_polyhedron = options.exact || !(r >= nearest_potential * s.frame.radius);
+    (by_polyhedron ? inside : outside).push_back(i);
+  }
+  if (!inside.empty() && !options.exact && options.inside != "exact") refuse_inside(s, inside, input.body.has_value());
+  s.field.value.resize(count);
+  if (derivatives != Derivatives::none) s.field.gradient.resize(count);
+  if (derivatives == Derivatives::second) s.field.hessian.resize(count);
+  if (!outside.empty())
+    take(backend.potential({moments, chosen(s.places.points, outside, s.frame.origin), s.lmax, derivatives}, monitor),
+         outside, s.field);
+  s.exact_points = inside.size();
+  if (inside.empty()) return;
+  const std::vector<Vec3> points = chosen(s.places.points, inside, Vec3::Zero());
+  ExactField exact = exact_field(*input.body, points, derivatives, threads, monitor);
+  take(exact.field, inside, s.field);
+  s.exact.assign(count, 0);
+  for (const std::size_t i : inside) s.exact[i] = 1;
+  s.density = std::move(exact.density);
+}
+
+void apply_law(const FieldLaw& law, PotentialField& field) {
+  for (double& v : field.value) v = law.potential(v);
+  for (Vec3& g : field.gradient) g = law.force(g);
+  for (SymmetricTensor& h : field.hessian) h = law.tensor(h);
+}
+
+const char* force_name(const Units& units) {
+  return units.law.charge ? "field" : "acceleration";
+}
+
+void add_one_point(const Solved& s, Findings& found) {
+  const PotentialField& f = s.field;
+  found.rows.push_back({"at", "at", s.places.points[0], s.units.length});
+  found.rows.push_back({"potential", "potential", f.value[0], s.units.potential});
+  if (!f.gradient.empty())
+    found.rows.push_back({force_name(s.units), force_name(s.units), f.gradient[0], s.units.force});
+  if (!f.hessian.empty()) {
+    const SymmetricTensor& h = f.hessian[0];
+    Eigen::Matrix3d tensor;
+    tensor << h[0], h[1], h[2], h[1], h[3], h[4], h[2], h[4], h[5];
+    found.rows.push_back({"gradient", fmt::format("gradient of the {}", force_name(s.units)), tensor, s.units.tensor});
+  }
+  if (!s.density.empty())
+    found.rows.push_back({"density", "density there", s.density[0],
+                          s.units.length == "m" ? (s.units.law.charge ? "C/m^3" : "kg/m^3") : "of the body"});
+}
+
+void add_ranges(const Solved& s, Findings& found) {
+  const auto [least, most] = std::minmax_element(s.field.value.begin(), s.field.value.end());
+  found.rows.push_back({"potential_min", "least potential", *least, s.units.potential});
+  found.rows.push_back({"potential_max", "greatest potential", *most, s.units.potential});
+  if (s.field.gradient.empty()) return;
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const Vec3& g : s.field.gradient) {
+    low = std::min(low, g.norm());
+    high = std::max(high, g.norm());
+  }
+  const std::string name = force_name(s.units);
+  found.rows.push_back({name + "_min", "least " + name, low, s.units.force});
+  found.rows.push_back({name + "_max", "greatest " + name, high, s.units.force});
+}
+
+void add_table(const Solved& s, Findings& found) {
+  const std::size_t count = s.places.points.size();
+  if (count > most_shown) {
+    found.notes.push_back(fmt::format("{} points: -o FILE.csv writes each of them", count));
+    return;
+  }
+  Table table{"points", "point by point", {{"x", s.units.length}, {"y", s.units.length}, {"z", s.units.length}}, {}};
+  table.columns.push_back({"potential", s.units.potential});
+  const char letter = s.units.law.charge ? 'e' : 'a';
+  if (!s.field.gradient.empty())
+    for (const char c : {'x', 'y', 'z'}) table.columns.push_back({fmt::format("{}{}", letter, c), s.units.force});
+  if (!s.field.hessian.empty())
+    for (const char* c : {"xx", "xy", "xz", "yy", "yz", "zz"})
+      table.columns.push_back({fmt::format("{}{}", letter, c), s.units.tensor});
+  table.columns.push_back({"exact"});
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3& p = s.places.points[i];
+    std::vector<Value> row = {p[0], p[1], p[2], s.field.value[i]};
+    if (!s.field.gradient.empty())
+      for (int c = 0; c < 3; ++c) row.emplace_back(s.field.gradient[i][c]);
+    if (!s.field.hessian.empty()) row.insert(row.end(), s.field.hessian[i].begin(), s.field.hessian[i].end());
+    row.emplace_back(!s.exact.empty() && s.exact[i] != 0);
+    table.rows.push_back(row);
+  }
+  found.tables.push_back(std::move(table));
+}
+
+void check_options(const PhysicsOptions& common, const Options& options) {
+  const auto refuse = [](const std::string& why) { throw Error(Fault::bad_argument, why); };
+  const bool file = is_coefficient_file(common.body.mesh);
+  if (options.errors && (options.places.any() || options.exact || !options.output.empty()))
+    refuse("--errors has places of its own: leave --at, --sphere, --plane, --exact and -o out");
+  if (!options.errors && !options.plot.empty()) refuse("--plot draws the errors of --errors");
+  if (options.output == "-") refuse("-o -: the standard output has the report; name a file");
+  if (file && (options.errors || options.exact || options.inside == "exact"))
+    throw Error(Fault::file_format, fmt::format("{} takes the exact polyhedron, and {} holds multipoles: take the mesh",
+                                                options.errors  ? "--errors"
+                                                : options.exact ? "--exact"
+                                                                : "--inside exact",
+                                                common.body.mesh));
+  if (!options.output.empty()) file_format(options.output);
+  if (!options.plot.empty()) plot::picture_format(options.plot);
+  for (const std::string& output : {options.output, options.plot})
+    if (!output.empty()) {
+      for (const std::string& name : input_files(common.body)) refuse_same_file(name, output);
+      refuse_same_file(options.places.at, output);
+    }
+}
+
+void add_errors(const SeriesErrors& errors, Findings& found) {
+  found.rows.push_back({"directions", "directions of each sphere", double(errors.directions)});
+  found.rows.push_back({"truth_from", "beyond, the truth is the series", errors.truth_from, "radii"});
+  found.rows.push_back({"truth_degree", "to degree", double(errors.truth_degree)});
+  found.rows.push_back({"truth_error", "which is there off the polyhedron by", errors.truth_error});
+  Table table{
+      "errors",
+      "relative errors of the series, by distance in Brillouin radii and order",
+      {{"distance"}, {"order"}, {"potential_max"}, {"potential_rms"}, {"acceleration_max"}, {"acceleration_rms"}},
+      {}};
+  for (const SeriesError& e : errors.rows)
+    table.rows.push_back(
+        {e.distance, double(e.order), e.potential_max, e.potential_rms, e.acceleration_max, e.acceleration_rms});
+  Table good{
+      "good_from",
+      "from which distance on, in Brillouin radii, an order is right to 1e-3, 1e-6 and 1e-9 everywhere, potential "
+      "and acceleration",
+      {{"order"}, {"1e-3"}, {"1e-6"}, {"1e-9"}},
+      {}};
+  for (const GoodFrom& g : errors.good_from) {
+    std::vector<Value> row = {double(g.order)};
+    for (const auto& distance : g.distance) row.push_back(distance ? Value(*distance) : Value());
+    good.rows.push_back(row);
+  }
+  found.tables = {std::move(table), std::move(good)};
+}
+
+Findings solve_errors(const PhysicsInput& input, const PhysicsOptions& common, const Options& options, Backend& backend,
+                      unsigned threads, Monitor& monitor) {
+  const std::vector<int> orders = parse_orders(options.orders);
+  for (const int order : orders)
+    if (order > largest_potential_degree)
+      throw Error(Fault::bad_argument, fmt::format("--orders: {} is beyond {}, the largest degree of a potential",
+                                                   order, largest_potential_degree));
+  const std::vector<double> distances = parse_distances(options.distances);
+  const SeriesErrors errors = series_errors(*input.body, orders, distances, backend, threads, monitor);
+  Findings found = findings_about(input, common);
+  found.notes.push_back(fmt::format(
+      "the truth is the exact potential of the polyhedron (Werner and Scheeres 1997), beyond {} radii the series "
+      "to degree {}",
+      errors.truth_from, errors.truth_degree));
+  found.rows = {
+      {"origin", "origin", input.body->origin, std::string(input.body->placement.metric ? "m" : mesh_length_unit)},
+      {"brillouin_radius", "Brillouin radius", input.body->brillouin_radius,
+       std::string(input.body->placement.metric ? "m" : mesh_length_unit)}};
+  add_errors(errors, found);
+  if (!options.plot.empty())
+    plot::write_plot(series_errors_plot(errors, fmt::format("How good the multipoles of {} are", found.input_name)),
+                     options.plot);
+  return found;
+}
+
+void add_head(const PhysicsInput& input, const Options& options, const Solved& s, bool metric, Findings& found) {
+  if (!metric)
+    found.notes.push_back(
+        fmt::format("lengths and densities are in the mesh's units and {} = 1; --length-unit or --length, "
+                    "and --density, make it SI",
+                    options.charge ? "k" : "G"));
+  if (options.charge)
+    found.notes.push_back("densities are of charge: potential k Q/r, field -grad of it, away from positive charges");
+  if (!input.body && !input.coefficients->origin)
+    found.notes.push_back("the file does not say its origin: places are counted from it");
+  if (options.exact)
+    found.notes.push_back("everywhere the exact potential of the polyhedron (Werner and Scheeres 1997)");
+  else if (s.exact_points > 0)
+    found.notes.push_back(
+        fmt::format("{} of {} points lie inside the sphere that holds the body: there the exact potential "
+                    "of the polyhedron (Werner and Scheeres 1997)",
+                    s.exact_points, s.places.points.size()));
+  found.rows = {{"law", "law", std::string(options.charge ? "charge" : "gravity")},
+                {"constant", options.charge ? "Coulomb's constant" : "Newton's constant", s.units.law.constant,
+                 metric ? (options.charge ? "N m^2/C^2" : "m^3/(kg s^2)") : ""},
+                {"lmax", "series to degree", options.exact ? Value() : Value(double(s.lmax))},
+                {"origin", "origin", s.frame.origin, s.units.length},
+                {"brillouin_radius", "radius of the sphere that holds the body", s.frame.radius, s.units.length},
+                {"places", "places", s.places.name},
+                {"point_count", "points", double(s.places.points.size())},
+                {"exact_count", "of them by the polyhedron", double(s.exact_points)}};
+}
+
+// The paper's formula has another factor before the moments.
+std::vector<Comparison> beside_paper() {
+  std::vector<Comparison> rows;
+  for (const int l : {0, 2}) {
+    const double factor = 4 * std::numbers::pi / (2 * l + 1);
+    rows.push_back({fmt::format("factor of G Q_lm / r^(l+1), l = {}", l), factor, std::sqrt(factor),
+                    l == 0 ? "Q_00 = M/sqrt(4 pi) must give -G M/r: 4 pi/(2l + 1), not its square root"
+                           : "the same for the quadrupole"});
+  }
+  return rows;
+}
+
+int degree_wanted(const PhysicsInput& input, const Options& options) {
+  if (options.lmax >= 0) {
+    if (input.coefficients && options.lmax > input.coefficients->lmax)
+      throw Error(Fault::bad_argument, fmt::format("--order {}: the file's coefficients end at degree {}", options.lmax,
+                                                   input.coefficients->lmax));
+    return options.lmax;
+  }
+  return input.body ? usual_degree : std::min(input.coefficients->lmax, largest_potential_degree);
+}
+
+Findings solve(const PhysicsOptions& typed, const Options& options, const Common& common) {
+  check_options(typed, options);
+  PhysicsOptions own = typed;
+  own.body.charge = options.charge;
+  std::unique_ptr<AtomicFile> file;
+  if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
+  const PhysicsInput input = load_input(own);
+  std::string note;
+  const auto backend = open_backend(common, &note);
+  if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
+  ConsoleMonitor monitor(common.style());
+  if (options.errors) return solve_errors(input, own, options, *backend, common.threads, monitor);
+
+  Solved s;
+  s.lmax = options.exact ? 0 : degree_wanted(input, options);
+  const PlacedMoments placed = placed_moments(input, own, s.lmax, *backend, monitor);
+  s.units = units_of(placed.metric, options.charge);
+  s.frame = {placed.moments.origin, placed.moments.reference_radius, placed.metric};
+  const auto check_count = [&](std::size_t count) {
+    MemoryNeed need = backend->potential_memory(count, s.lmax, Derivatives(options.derivatives));
+    need.host += 64 * count + (options.output.empty() ? 0 : potential_file_bytes(count));
+    check_memory(need, *backend, "ask for fewer points or a lower --order");
+  };
+  check_count(count_places(options.places));
+  s.places = read_places(options.places, s.frame);
+  check_count(s.places.points.size());
+  compute(input, options, placed.moments, *backend, common.threads, monitor, s);
+  monitor.clear();
+  apply_law(s.units.law, s.field);
+
+  Findings found = findings_about(input, own);
+  if (!note.empty()) found.notes.push_back(note);
+  add_head(input, options, s, placed.metric, found);
+  if (s.places.points.size() == 1) {
+    add_one_point(s, found);
+  } else {
+    add_ranges(s, found);
+    add_table(s, found);
+  }
+  found.rows.push_back({"device", "device", device_line(backend->facts())});
+  if (own.paper()) found.paper = beside_paper();
+  if (file) {
+    const PotentialTable table{found.input_name, s.places.points, s.field,           s.exact,
+                               options.charge,   s.units.length,  s.units.potential, s.units.force,
+                               s.units.tensor,   s.places.grid,   s.places.radius};
+    write_potentials(table, file_format(options.output), *file, monitor);
+    check_stop(monitor);
+    file->commit();
+    if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
+  }
+  return found;
+}
+
+} // namespace
+
+Solve add_potential(CLI::App& command, Common& common) {
+  const auto options = std::make_shared<Options>();
+  command
+      .add_option("--at", options->places.at,
+                  "X,Y,Z in the body's coordinates, or a text file of points, one a line (- for standard input)")
+      ->type_name("POINTS");
+  command
+      .add_option(
+          "--sphere", options->places.sphere,
+          "A sphere about the origin, of radius R: a length, or 1.5R for multiples of the sphere that holds the body")
+      ->type_name("R");
+  command.add_option("--resolution", options->places.resolution, "Rings of its Gauss-Legendre grid")
+      ->check(CLI::Range(1, largest_grid_degree + 1))
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      .add_option(
+          "--plane", options->places.plane,
+          "A plane AXIS,OFFSET,EXTENT,N: across x, y or z, OFFSET from the origin, EXTENT to all sides, N x N points")
+      ->type_name("PLANE");
+  command
+      .add_option("--order,--lmax", options->lmax,
+                  fmt::format("Degree that the series goes to (default {}, of a file all it has)", usual_degree))
+      ->check(CLI::Range(0, largest_potential_degree))
+      ->type_name("L");
+  command
+      .add_option("--derivatives", options->derivatives,
+                  "0 potential, 1 acceleration too, 2 the acceleration's gradient too")
+      ->check(CLI::Range(0, 2))
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      .add_option("--inside", options->inside,
+                  "Points inside the sphere that holds the body: refuse, or exact, the polyhedron's closed form")
+      ->check(CLI::IsMember({"refuse", "exact"}))
+      ->capture_default_str();
+  command.add_flag("--exact", options->exact, "The polyhedron's closed form everywhere");
+  command.add_flag("--charge", options->charge, "--density is one of charge (C/m3): volts, and volts a metre");
+  command.add_flag("--errors", options->errors,
+                   "Instead: relative errors of the series against the polyhedron, by distance and order");
+  command.add_option("--orders", options->orders, "Of --errors: 0..4,8")
+      ->capture_default_str()
+      ->allow_extra_args(false)
+      ->type_name("LIST");
+  command.add_option("--distances", options->distances, "Of --errors, in radii of the sphere that holds the body")
+      ->capture_default_str()
+      ->type_name("LIST");
+  command.add_option("--plot", options->plot, "Of --errors, a picture: FILE.png or FILE.svg")->type_name("FILE");
+  command.add_option("-o,--output", options->output, "Point by point: FILE.csv or FILE.nc")->type_name("FILE");
+  add_common_options(command, common);
+  return [options, &common](const PhysicsOptions& typed) { return solve(typed, *options, common); };
+}
+
+} // namespace cowgpu::cli
