@@ -153,6 +153,10 @@ TEST_CASE("a body that touches already, or has no surface, is refused", "[drop]"
   CHECK_THROWS_AS(drop(problem_of(body, 1)), Error);
   CHECK_THROWS_AS(drop(problem_of(body, 0.5)), Error);
   CHECK_THROWS_AS(drop(problem_of(body, -3)), Error);
+  CHECK_THROWS_AS(drop(problem_of(body, 1e13)), Error);
+  DropProblem fast = problem_of(body, 2);
+  fast.spin = Vec3(0, 0, 1e5);
+  CHECK_THROWS_AS(drop(fast), Error);
   CHECK_THROWS_AS(drop(problem_of(body, std::numeric_limits<double>::infinity())), Error);
   DropProblem empty = problem_of(body, 10);
   empty.vertices = {};

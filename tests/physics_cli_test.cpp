@@ -237,7 +237,7 @@ TEST_CASE("tides and drop name what they cannot use", "[physics][cli]") {
   refused(drop, 2, "--height");
   refused({"tides", "builtin:cow@1", "--orbit", "7000km"}, 2, "--length");
   refused({"drop", "builtin:cow@1", "--height", "7m"}, 2, "--density");
-  refused(with(tides, {"--orbit", "1m"}), 2, "multipoles");
+  refused(with(tides, {"--orbit", "1m"}), 3, "multipoles");
   refused(with(tides, {"--orbit", "-7000km"}), 2, "above 0");
   refused(with(tides, {"--orbit", "7000"}), 2, "unit");
   refused(with(tides, {"--orbit", "7000kg"}), 2, "R_earth");
@@ -249,6 +249,8 @@ TEST_CASE("tides and drop name what they cannot use", "[physics][cli]") {
   refused(with(tides, {"--orbit", "1au", "--order", "1"}), 2, "--order");
   refused(with(drop, {"--height", "0.1m"}), 2, "touches the ground already");
   refused(with(drop, {"--height", "-1m"}), 2, "above 0");
+  refused(with(drop, {"--height", "1e300m"}), 2, "lower --height");
+  refused(with(drop, {"--height", "9m", "--spin", "x,1e6rad/s"}), 2, "lower --spin");
   refused(with(drop, {"--height", "9"}), 2, "unit");
   refused(with(drop, {"--height", "9m", "--attitude", "sideways"}), 2, "upside-down");
   refused(with(drop, {"--height", "9m", "--attitude", "x:abc"}), 2, "degrees");

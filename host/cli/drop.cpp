@@ -96,7 +96,7 @@ Drop solve_drop(const PhysicsInput& input, const PhysicsOptions& common, const O
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (Vec3& v : vertices) v -= input.body->centre_of_mass;
   d.problem.vertices = vertices;
-  d.result = drop(d.problem);
+  d.result = drop(d.problem, ConsoleMonitor(ProgressStyle::none));
   d.touch = vertices[d.result.touching];
   d.problem.vertices = {};
   d.tilt_before = tilt(d.problem.attitude, d.feet);

@@ -79,14 +79,18 @@ public:
   // A time in which no point of the body gets `way` further down: speeds grow at most like now + growth t.
   Real safe_time(const State& y, Real way) const {
     const Real low = ground_ > 0 ? ground_ : start_, gravity = Real(problem_.planet.gm) / (low * low);
-    const LongVec3 spin = angular_velocity(y);
-    // The energy bounds what the spin of a free body can become.
-    const Real turning = std::sqrt(spin.dot(inertia_ * spin) / least_moment_) * (1 + 1e-3L);
-    const Real radius = reach_;
-    const Real now = y.segment<3>(velocity).norm() + turning * radius;
+    const Real radius = reach_, now = y.segment<3>(velocity).norm() + rim_speed(y) * (1 + 1e-3L);
     const Real growth = gravity + 3 * gravity / low * radius;
     return 2 * way / (now + std::sqrt(now * now + 4 * growth * way));
   }
+
+  // No vertex of a free body ever moves faster about its centre: the energy bounds what its spin can become.
+  Real rim_speed(const State& y) const {
+    const LongVec3 spin = angular_velocity(y);
+    return std::sqrt(spin.dot(inertia_ * spin) / least_moment_) * reach_;
+  }
+
+  Real landing_speed(Real way) const { return std::sqrt(2 * way * Real(problem_.planet.gm) / start_ / (start_ - way)); }
 
   // Sizes, for what is exactly or nearly nothing, by what a long rod would do in the time that the fall takes.
   std::vector<Block> blocks() const {
@@ -182,12 +186,16 @@ long double radial_fall_time(long double gm, long double r, long double d) {
   return std::sqrt(r / (2 * gm)) * r * (std::asin(std::sqrt(part)) + std::sqrt(part * (1 - part)));
 }
 
-DropResult drop(const DropProblem& problem) {
+DropResult drop(const DropProblem& problem, const Monitor& monitor) {
   if (problem.vertices.empty()) throw Error(Fault::bad_argument, "a body without a surface has no lowest point");
   if (!std::isfinite(problem.height) || !(problem.height > 0))
     throw Error(Fault::bad_argument,
                 fmt::format("the height is {} m; it is that of the centre of mass above the ground and must be above 0",
                             problem.height));
+  if (problem.height > 1e6 * problem.planet.radius)
+    throw Error(Fault::bad_argument,
+                fmt::format("a height of {} m is no fall to a ground of radius {} m: give a lower --height",
+                            problem.height, problem.planet.radius));
   const Fall fall(problem);
   State y = State::Zero(size);
   Fall::Lowest least = fall.lowest(y);
@@ -199,12 +207,19 @@ DropResult drop(const DropProblem& problem) {
         fmt::format("at a height of {} m the body touches the ground already: its lowest point is {:.6g} m under "
                     "its centre of mass; give a larger --height",
                     problem.height, result.depth));
+  if (const Real speed = fall.rim_speed(y), falls = fall.landing_speed(least.height); speed > 1000 * falls)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("the spin moves the body's rim at {:.3g} m/s, more than 1000 times as fast as it falls from here "
+                    "({:.3g} m/s): lower --spin",
+                    double(speed), double(falls)));
   result.torque = fall.pull_at(LongVec3(0, fall.start(), 0), LongMat3::Identity()).torque;
   const Slope slope = [&](Real, const State& s) { return fall.slope(s); };
   const Real close = 1e-13L * (problem.height + fall.reach());
   const std::vector<Block> blocks = fall.blocks();
   Real step = 0, t = 0;
   while (least.height > close) {
+    check_stop(monitor);
     const Real time = fall.safe_time(y, least.height);
     y = extrapolate(slope, y, t, t + time, blocks, step);
     t += time;

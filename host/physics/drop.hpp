@@ -1,6 +1,7 @@
 // A rigid body that falls to the ground of a spherical planet without air, turned by the gradient of gravity.
 #pragma once
 
+#include "host/monitor.hpp"
 #include "host/physics/point_mass.hpp"
 
 #include <cstddef>
@@ -40,9 +41,11 @@ struct DropResult {
 };
 
 /// Integrates position, momentum, attitude (a quaternion) and angular momentum by extrapolate(), all as departures from the
-/// start, until the first vertex touches the sphere of the ground; time steps never lead beyond the first contact. Throws
-/// Error(bad_argument) for a height at which the body touches already, or that is not finite, and for a body without vertices.
-DropResult drop(const DropProblem& problem);
+/// start, until the first vertex touches the sphere of the ground: no time step is longer than the body needs to reach it.
+/// Throws Error(bad_argument) for a height at which the body touches already, or that is not finite or over 1e6 radii of the
+/// ground, for a body without vertices, and for a spin that moves its vertices more than 1000 times faster than it falls, which
+/// takes too many steps; interrupted.
+DropResult drop(const DropProblem& problem, const Monitor& monitor = silent_monitor());
 
 /// Time in s of a radial fall from rest at r over the distance d < r:
 /// sqrt(r^3/(2 gm)) (asin sqrt(d/r) + sqrt(d/r (1 - d/r))).

@@ -2,6 +2,7 @@
 
 #include "host/backend.hpp"
 #include "host/error.hpp"
+#include "host/reference/potential.hpp"
 #include "host/spectrum/convert.hpp"
 #include "host/spectrum/verify.hpp"
 
@@ -28,7 +29,7 @@ MassiveBody massive_body(const MassTensors& tensors, Coefficients moments, int o
   if (order < 3) return body;
   for (int l = 0; l <= 2; ++l)
     for (int m = 0; m <= l; ++m) moments.values[Coefficients::index(l, m)] = 0;
-  body.higher.emplace(moments, order);
+  body.higher = std::make_shared<const reference::ExteriorPotential<long double>>(moments, order);
   return body;
 }
 

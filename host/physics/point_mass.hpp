@@ -5,12 +5,16 @@
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
 #include "host/physics/tensors.hpp"
-#include "host/reference/potential.hpp"
 
 #include <Eigen/Core>
 
-#include <optional>
+#include <memory>
 #include <string>
+
+namespace cowgpu::reference {
+template <class Real>
+class ExteriorPotential; // host/reference/potential.hpp
+}
 
 namespace cowgpu::physics {
 
@@ -38,7 +42,7 @@ struct MassiveBody {
   Eigen::Matrix3d quadrupole = Eigen::Matrix3d::Zero();
   double radius = 0; ///< of the Brillouin sphere, which the point mass must be outside of
   int order = 2;     ///< the last degree that counts
-  std::optional<reference::ExteriorPotential<long double>> higher; ///< of degrees 3 to `order`
+  std::shared_ptr<const reference::ExteriorPotential<long double>> higher; ///< of degrees 3 to `order`; null where 2
 };
 
 /// Degrees 3 and more of `moments`, in kg m^l, and what else is in `tensors`, about the centre of mass in SI. Throws

@@ -53,7 +53,7 @@ Orbit circular_orbit(const PointMass& centre, const MassiveBody& body, double ra
   check_positive("mass at the centre of the orbit", centre.gm);
   check_positive("radius of the orbit", radius);
   if (radius <= body.radius)
-    throw Error(Fault::bad_argument,
+    throw Error(Fault::point_inside,
                 fmt::format("the orbit of radius {} m runs inside the sphere of radius {} m about the body's centre of "
                             "mass that holds the body: its multipoles say nothing there; give a larger --orbit",
                             radius, body.radius));

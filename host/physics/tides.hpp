@@ -22,8 +22,8 @@ struct Orbit {
   double gradient = 0; ///< gm/r^3; n^2 of a body without mass
 };
 
-/// Throws Error(bad_argument) for a mass or a radius that is not above 0 and finite, and a radius inside the body's Brillouin
-/// sphere.
+/// Throws Error(bad_argument) for a mass or a radius that is not above 0 and finite, point_inside for a radius inside the body's
+/// Brillouin sphere.
 Orbit circular_orbit(const PointMass& centre, const MassiveBody& body, double radius);
 
 /// How a motionless attitude in the orbit frame fares after a small disturbance.
