@@ -89,11 +89,11 @@ std::vector<Value> order_row(const Value& order, const Stood& s, double gravity,
           note};
 }
 
-std::string order_note(const Stance& stance, const std::string& first) {
+std::string order_note(const Stood& stood, const std::string& first) {
   std::string note = first;
   const auto add = [&](const char* text) { note += (note.empty() ? "" : "; ") + std::string(text); };
-  if (stance.rolls) add("rolls: touches at one point");
-  if (stance.held) add("held fore and aft");
+  if (stood.chosen().rolls) add("rolls over the point that it touches at");
+  if (stood.stance.held) add("held fore and aft");
   return note;
 }
 
@@ -113,7 +113,7 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
                {"force_left_N", "N", false},
                {"force_right_N", "N", false},
                {"friction_needed"},
-               {"least_impulse", "N s"},
+               {"least_impulse_Ns", "N s"},
                {"inertia_about_pivot", "kg m^2", false},
                {"settle_angle_deg", "degrees"},
                {"note"}},
@@ -123,11 +123,12 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
     check_stop(monitor);
     monitor.progress("orders stood up", double(i) / double(input.orders.size()));
     const int order = input.orders[i];
+    StandOptions standing = how;
+    if (order == 0) standing.as_modelled = true; // a ball stands in any attitude, but on facets of its triangulation
     try {
       std::string note;
-      const Stood stood = stand_up(order_body(input, options.choice, order, monitor, note), how, options.side);
-      table.rows.push_back(
-          order_row(double(order), stood, options.gravity, input.metric, order_note(stood.stance, note)));
+      const Stood stood = stand_up(order_body(input, options.choice, order, monitor, note), standing, options.side);
+      table.rows.push_back(order_row(double(order), stood, options.gravity, input.metric, order_note(stood, note)));
     } catch (const Error& error) {
       if (error.fault() != Fault::cannot_stand && error.fault() != Fault::mesh_no_volume &&
           error.fault() != Fault::mesh_not_finite)
@@ -139,7 +140,7 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
     }
   }
   table.rows.push_back(order_row(std::string("full"), full, options.gravity, input.metric,
-                                 order_note(full.stance, input.full_is == "the mesh" ? "" : input.full_is)));
+                                 order_note(full, input.full_is == "the mesh" ? "" : input.full_is)));
   return table;
 }
 

@@ -31,8 +31,9 @@ Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre);
 
 /// Where a body touches the ground.
 struct Contact {
-  double ground = 0;         ///< y of the ground: the lowest vertex
-  std::vector<Vec3> support; ///< vertices no more than the tolerance above it, as they stand
+  double ground = 0;                 ///< y of the ground: the lowest vertex
+  std::vector<std::size_t> vertices; ///< indices of those no more than the tolerance above it
+  std::vector<Vec3> support;         ///< where they are
   std::vector<Vec3>
       patch; ///< corners of their convex hull seen from above, counter-clockwise about y; 1 or 2 if it has no area
   double margin = 0; ///< distance of the barycentre's foot from the patch's border, below 0 outside
