@@ -26,10 +26,12 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/spectrum", {"host", "host/mesh", "host/map", "host/plan", "host/reference"}},
     {"host/flow", {"host", "host/mesh", "host/map", "host/spectrum"}},
     {"host/physics", {"host", "host/mesh", "host/io", "host/spectrum"}},
-    {"host/report", {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics"}},
+    {"host/plot", {"host", "host/io"}},
+    {"host/report",
+     {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/plot"}},
     {"host/cli",
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/report",
-      "host/plan"}},
+      "host/plan", "host/plot"}},
 };
 
 struct Include {
