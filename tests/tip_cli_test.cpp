@@ -38,7 +38,7 @@ std::string written(const TemporaryFolder& folder, const char* name, const char*
 }
 
 // 0.8 m along z, 2 m high, 60 kg: the threshold is 60 g 0.4/(2 r), r = sqrt(1.16) m.
-const std::vector<std::string> box = {"builtin:box:1,2,0.8", "--length-unit", "1m", "--density", "37.5kg/m3"};
+const std::vector<std::string> crate = {"builtin:box:1,2,0.8", "--length-unit", "1m", "--density", "37.5kg/m3"};
 
 std::vector<std::string> with(std::vector<std::string> first, const std::vector<std::string>& more) {
   first.insert(first.end(), more.begin(), more.end());
@@ -51,7 +51,7 @@ constexpr double g = 9.80665;
 
 TEST_CASE("tip of a box in newtons, and in its weight where no unit is stated", "[tip][cli]") {
   const double r = std::sqrt(1.16), force = 60 * g * 0.4 / (2 * r);
-  const json metric = answer(box);
+  const json metric = answer(crate);
   CHECK(metric["force_N"].get<double>() == Approx(force).epsilon(1e-13));
   CHECK(metric["force_N_paper_balance"].get<double>() == Approx(60 * g * 0.4 / (r + 0.16 / r)).epsilon(1e-13));
   CHECK(metric["weight_N"].get<double>() == Approx(60 * g).epsilon(1e-13));
@@ -73,43 +73,45 @@ TEST_CASE("tip of a box in newtons, and in its weight where no unit is stated", 
   CHECK(plain["side"] == "left");
   CHECK_FALSE(plain.contains("boundary"));
   CHECK_THAT(plain["notes"].dump(), Contains("units of the body's weight"));
-  const json moon = answer(with(box, {"--gravity", "1.62"}));
+  const json moon = answer(with(crate, {"--gravity", "1.62"}));
   CHECK(moon["force_N"].get<double>() == Approx(force * 1.62 / g).epsilon(1e-13));
 }
 
 TEST_CASE("feet slip before the body tips below the friction coefficient that it needs", "[tip][cli]") {
-  const double needed = answer(box)["friction_needed"];
-  const json smooth = answer(with(box, {"--friction", std::to_string(needed - 1e-3)}));
-  const json rough = answer(with(box, {"--friction", std::to_string(needed + 1e-3)}));
+  const double needed = answer(crate)["friction_needed"];
+  const json smooth = answer(with(crate, {"--friction", std::to_string(needed - 1e-3)}));
+  const json rough = answer(with(crate, {"--friction", std::to_string(needed + 1e-3)}));
   CHECK(smooth["slips_before_tipping"] == true);
   CHECK(smooth["slip_force_N"].get<double>() < smooth["force_N"].get<double>());
   CHECK(rough["slips_before_tipping"] == false);
   CHECK(rough["slip_force_N"].get<double>() > rough["force_N"].get<double>());
-  CHECK(answer(with(box, {"--friction", "0"}))["slip_force_N"] == 0);
+  CHECK(answer(with(crate, {"--friction", "0"}))["slip_force_N"] == 0);
 }
 
 TEST_CASE("a push that lasts: pulse and table, body and space, and the boundary between", "[tip][cli]") {
   const TemporaryFolder folder;
-  const json found = answer(with(box, {"--punch", "500N", "--sustained", "50N", "--punch-duration", "20ms"}));
+  const json found = answer(with(crate, {"--punch", "500N", "--sustained", "50N", "--punch-duration", "20ms"}));
   CHECK(found["sustained_tips"] == false);
   CHECK(found["punch_tips"] == false);
   const double least = found["punch_least_duration_s"];
   CHECK(found["punch_impulse_Ns"].get<double>() > found["least_impulse_Ns"].get<double>());
   CHECK(found["punch_force_needed_N"].get<double>() * 0.02 > found["least_impulse_Ns"].get<double>());
   const auto pulse = [&](double part) { return "500N:" + std::to_string(least * part) + "s"; };
-  const json tips = answer(with(box, {"--push", pulse(1.001), "--friction", "10"}));
+  const json tips = answer(with(crate, {"--push", pulse(1.001), "--friction", "10"}));
   CHECK(tips["push_tips"] == true);
   CHECK(tips["push_slips"] == false);
-  const json back = answer(with(box, {"--push", pulse(0.999)}));
+  const json back = answer(with(crate, {"--push", pulse(0.999)}));
   CHECK(back["push_outcome"] == "lifts off and falls back");
   CHECK(back["push_peak_tilt_deg"].get<double>() < back["balance_angle_deg"].get<double>());
-  const json space = answer(with(box, {"--push", pulse(1.001), "--push-direction", "space"}));
-  CHECK(space["push_tips"] == false);
-  const json never = answer(with(box, {"--push", "50N:1h"}));
+  const json space = answer(with(crate, {"--push-direction", "space", "--punch", "500N"}));
+  CHECK(space["push_direction"] == "stays in space");
+  CHECK(space["punch_least_duration_s"].get<double>() > least * (1 + 1e-5));
+  const json never = answer(with(crate, {"--push", "50N:1h"}));
   CHECK(never["push_outcome"] == "never lifts off");
   CHECK(never["push_end_time_s"].is_null());
   const std::string table = written(folder, "push.csv", "time,force\n0,500\n0.05,500\n0.05,0\n9,0\n");
-  const json by_table = answer(with(box, {"--push", table})), by_pulse = answer(with(box, {"--push", "500N:0.05s"}));
+  const json by_table = answer(with(crate, {"--push", table})),
+             by_pulse = answer(with(crate, {"--push", "500N:0.05s"}));
   CHECK(by_table["push_peak_tilt_deg"].get<double>() ==
         Approx(by_pulse["push_peak_tilt_deg"].get<double>()).epsilon(1e-9));
   const json& rows = found["boundary"]["rows"];
@@ -201,7 +203,7 @@ TEST_CASE("tip refuses what it is not for, by name", "[tip][cli]") {
 TEST_CASE("tip refuses pushes that are none", "[tip][cli]") {
   const TemporaryFolder folder;
   const auto push = [&](const std::string& text, int code, const char* word) {
-    refused(with(box, {"--push", text}), code, word);
+    refused(with(crate, {"--push", text}), code, word);
   };
   push("5000N", 2, "FORCE:DURATION");
   push("-5N:1s", 2, "above 0");

@@ -1,4 +1,5 @@
 #include "host/cli/tip_input.hpp"
+#include "host/cli/tip_plot.hpp"
 #include "host/cli/tip_push.hpp"
 
 #include "host/error.hpp"
@@ -26,6 +27,7 @@ struct Options {
   std::string tolerance;
   double gravity = standard_gravity;
   double friction = -1; // below 0: not given
+  std::string plot;     // a picture of the boundary, or empty
 };
 
 // A body on the ground and what tips it to either side.
@@ -238,6 +240,10 @@ std::vector<Comparison> beside_paper(const TipInput& input, const Options& optio
 
 Findings solve(const PhysicsOptions& common, const Options& options, const Common& program) {
   const PushPlan plan = plan_push(options.push);
+  if (!options.plot.empty()) {
+    check_tip_plot(options.plot);
+    for (const std::string& file : input_files(common.body)) refuse_same_file(file, options.plot);
+  }
   TipInput input = load_tip_input(common, options.choice, program);
   if (!input.metric && (plan.profile || plan.punch_duration))
     throw Error(Fault::bad_argument,
@@ -252,14 +258,20 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
   const std::string length = input.metric ? "m" : "of the mesh";
   std::optional<double> friction;
   if (options.friction >= 0) friction = options.friction;
-  if (input.metric)
-    add_push_findings(rocker(stood.stance.body, stood.chosen(), options.gravity, plan.turns_with_body), options.push,
-                      plan, friction, found);
+  const Rocker body = rocker(stood.stance.body, stood.chosen(), options.gravity, plan.turns_with_body);
+  if (input.metric) add_push_findings(body, options.push, plan, friction, found);
+  if (!options.plot.empty() && !(body.balance > 0))
+    throw Error(Fault::bad_argument, "--plot: any push tips this body, so there is no boundary to draw");
   found.tables.insert(found.tables.begin(), patch_table(stood.stance, length));
   found.tables.push_back(orders_table(input, options, how, stood, length, monitor));
   monitor.clear();
   if (common.paper())
     found.paper = beside_paper(input, options, options.as_modelled ? stand_up(input.full, {}, options.side) : stood);
+  if (!options.plot.empty()) {
+    check_stop(monitor);
+    write_tip_plot(body, options.push, plan, options.plot);
+    if (!program.quiet) say(fmt::format("cowgpu: wrote {}\n", options.plot));
+  }
   return found;
 }
 
@@ -310,6 +322,11 @@ Solve add_tip(CLI::App& command, Common& common) {
       ->check(non_negative_number())
       ->type_name("MU");
   add_push_options(command, options->push);
+  command
+      .add_option("--plot", options->plot,
+                  "The boundary between tipping and falling back: least duration over force, FILE.png or FILE.svg")
+      ->type_name("FILE")
+      ->check(not_empty());
   add_common_options(command, common);
   return [options, &common](const PhysicsOptions& physics) { return solve(physics, *options, common); };
 }

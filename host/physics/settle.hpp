@@ -25,8 +25,8 @@ struct Attitude {
   bool balanced = false; ///< stood on a corner or an edge, b right above: it was let fall to the right, or off the edge
 };
 
-/// Rolls a body down from the attitude as modelled. Throws Error(cannot_stand) for a barycentre that the convex hull of the
-/// vertices does not hold inside (parts of negative mass), and for fewer than four vertices or flat ones.
+/// Rolls a body down from the attitude as modelled. Throws Error(cannot_stand) where the barycentre comes down to the ground:
+/// it lies outside the convex hull of the vertices then (parts of negative mass), or they are flat.
 Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre);
 
 /// Where a body touches the ground.
