@@ -1,4 +1,5 @@
 #include "host/cli/tip_input.hpp"
+#include "host/cli/tip_plot.hpp"
 #include "host/cli/tip_push.hpp"
 
 #include "host/error.hpp"
@@ -26,6 +27,7 @@ struct Options {
   std::string tolerance;
   double gravity = standard_gravity;
   double friction = -1; // below 0: not given
+  std::string plot;     // a picture of the boundary, or empty
 };
 
 // A body on the ground and what tips it to either side.
@@ -89,11 +91,11 @@ std::vector<Value> order_row(const Value& order, const Stood& s, double gravity,
           note};
 }
 
-std::string order_note(const Stance& stance, const std::string& first) {
+std::string order_note(const Stood& stood, const std::string& first) {
   std::string note = first;
   const auto add = [&](const char* text) { note += (note.empty() ? "" : "; ") + std::string(text); };
-  if (stance.rolls) add("rolls: touches at one point");
-  if (stance.held) add("held fore and aft");
+  if (stood.chosen().rolls) add("rolls over the point that it touches at");
+  if (stood.stance.held) add("held fore and aft");
   return note;
 }
 
@@ -113,7 +115,7 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
                {"force_left_N", "N", false},
                {"force_right_N", "N", false},
                {"friction_needed"},
-               {"least_impulse", "N s"},
+               {"least_impulse_Ns", "N s"},
                {"inertia_about_pivot", "kg m^2", false},
                {"settle_angle_deg", "degrees"},
                {"note"}},
@@ -123,11 +125,12 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
     check_stop(monitor);
     monitor.progress("orders stood up", double(i) / double(input.orders.size()));
     const int order = input.orders[i];
+    StandOptions standing = how;
+    if (order == 0) standing.as_modelled = true; // a ball stands in any attitude, but on facets of its triangulation
     try {
       std::string note;
-      const Stood stood = stand_up(order_body(input, options.choice, order, monitor, note), how, options.side);
-      table.rows.push_back(
-          order_row(double(order), stood, options.gravity, input.metric, order_note(stood.stance, note)));
+      const Stood stood = stand_up(order_body(input, options.choice, order, monitor, note), standing, options.side);
+      table.rows.push_back(order_row(double(order), stood, options.gravity, input.metric, order_note(stood, note)));
     } catch (const Error& error) {
       if (error.fault() != Fault::cannot_stand && error.fault() != Fault::mesh_no_volume &&
           error.fault() != Fault::mesh_not_finite)
@@ -139,7 +142,7 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
     }
   }
   table.rows.push_back(order_row(std::string("full"), full, options.gravity, input.metric,
-                                 order_note(full.stance, input.full_is == "the mesh" ? "" : input.full_is)));
+                                 order_note(full, input.full_is == "the mesh" ? "" : input.full_is)));
   return table;
 }
 
@@ -237,6 +240,10 @@ std::vector<Comparison> beside_paper(const TipInput& input, const Options& optio
 
 Findings solve(const PhysicsOptions& common, const Options& options, const Common& program) {
   const PushPlan plan = plan_push(options.push);
+  if (!options.plot.empty()) {
+    check_tip_plot(options.plot);
+    for (const std::string& file : input_files(common.body)) refuse_same_file(file, options.plot);
+  }
   TipInput input = load_tip_input(common, options.choice, program);
   if (!input.metric && (plan.profile || plan.punch_duration))
     throw Error(Fault::bad_argument,
@@ -251,14 +258,20 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
   const std::string length = input.metric ? "m" : "of the mesh";
   std::optional<double> friction;
   if (options.friction >= 0) friction = options.friction;
-  if (input.metric)
-    add_push_findings(rocker(stood.stance.body, stood.chosen(), options.gravity, plan.turns_with_body), options.push,
-                      plan, friction, found);
+  const Rocker body = rocker(stood.stance.body, stood.chosen(), options.gravity, plan.turns_with_body);
+  if (input.metric) add_push_findings(body, options.push, plan, friction, found);
+  if (!options.plot.empty() && !(body.balance > 0))
+    throw Error(Fault::bad_argument, "--plot: any push tips this body, so there is no boundary to draw");
   found.tables.insert(found.tables.begin(), patch_table(stood.stance, length));
   found.tables.push_back(orders_table(input, options, how, stood, length, monitor));
   monitor.clear();
   if (common.paper())
     found.paper = beside_paper(input, options, options.as_modelled ? stand_up(input.full, {}, options.side) : stood);
+  if (!options.plot.empty()) {
+    check_stop(monitor);
+    write_tip_plot(body, options.push, plan, options.plot);
+    if (!program.quiet) say(fmt::format("cowgpu: wrote {}\n", options.plot));
+  }
   return found;
 }
 
@@ -309,6 +322,11 @@ Solve add_tip(CLI::App& command, Common& common) {
       ->check(non_negative_number())
       ->type_name("MU");
   add_push_options(command, options->push);
+  command
+      .add_option("--plot", options->plot,
+                  "The boundary between tipping and falling back: least duration over force, FILE.png or FILE.svg")
+      ->type_name("FILE")
+      ->check(not_empty());
   add_common_options(command, common);
   return [options, &common](const PhysicsOptions& physics) { return solve(physics, *options, common); };
 }

@@ -94,7 +94,7 @@ Table boundary(const Rocker& rocker, const PushOptions& options, const PushPlan&
   std::stable_sort(forces.begin(), forces.end(), [](const Row& a, const Row& b) { return a.force < b.force; });
   Table table{"boundary",
               "how long a constant push must last to tip it (-: it never does)",
-              {{"force_N", "N"}, {"least_duration_s", "s"}, {"impulse", "N s"}, {"friction_needed"}, {"mark"}},
+              {{"force_N", "N"}, {"least_duration_s", "s"}, {"impulse_Ns", "N s"}, {"friction_needed"}, {"mark"}},
               {}};
   if (friction) table.columns.insert(table.columns.end() - 1, {"grips"});
   for (const Row& row : forces) {
@@ -115,7 +115,7 @@ void add_profile(const Rocker& rocker, const PushOptions& options, const Profile
   const bool lifted = result.outcome != Outcome::never_lifted;
   const std::vector<Finding> rows = {
       {"push", "push", options.push},
-      {"push_impulse", "its impulse", profile.impulse(), "N s"},
+      {"push_impulse_Ns", "its impulse", profile.impulse(), "N s"},
       {"push_outcome", "the body", name(result.outcome)},
       {"push_tips", "tips over", result.outcome == Outcome::tipped},
       {"push_peak_tilt_deg", "largest tilt", result.peak_tilt * degrees, "degrees"},
@@ -193,13 +193,13 @@ void add_push_findings(const Rocker& rocker, const PushOptions& options, const P
       {"inertia_about_pivot", "moment of inertia about the pivot edge", rocker.inertia, "kg m^2"},
       {"least_energy_J", "energy that tips it",
        rocker.mass * rocker.gravity * rocker.radius * (1 - std::cos(rocker.balance)), "J"},
-      {"least_impulse", "smallest impulse, of a short push", impulse, "N s"},
+      {"least_impulse_Ns", "smallest impulse, of a short push", impulse, "N s"},
       {"sustained_N", "sustained force", plan.sustained, "N"},
       {"sustained_tips", "tips it in the end", plan.sustained > rocker.threshold()},
       {"sustained_short_by", "force to begin over that", rocker.threshold() / plan.sustained},
       {"punch_N", "punch", plan.punch, "N"},
       {"punch_least_duration_s", "must last", finite(duration), "s"},
-      {"punch_impulse", "which is", finite(duration * plan.punch), "N s"},
+      {"punch_impulse_Ns", "which is", finite(duration * plan.punch), "N s"},
   };
   found.rows.insert(found.rows.end(), rows.begin(), rows.end());
   if (plan.punch_duration) {

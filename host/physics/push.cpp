@@ -30,18 +30,33 @@ constexpr std::array kronrod_weight = {0.022935322010529224963732008058970, 0.06
 constexpr std::array gauss_weight = {0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
                                      0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
 
-double integral(const std::function<double(double)>& f, double a, double b, double tolerance, int depth = 0) {
-  const double middle = (a + b) / 2, half = (b - a) / 2;
-  const double centre = f(middle);
+struct Panel {
+  double value = 0, error = 0;
+};
+
+Panel panel(const std::function<double(double)>& f, double a, double b) {
+  const double middle = (a + b) / 2, half = (b - a) / 2, centre = f(middle);
   double kronrod = kronrod_weight[7] * centre, gauss = gauss_weight[3] * centre;
   for (std::size_t i = 0; i < 7; ++i) {
     const double pair = f(middle - half * kronrod_at[i]) + f(middle + half * kronrod_at[i]);
     kronrod += kronrod_weight[i] * pair;
     if (i % 2 == 1) gauss += gauss_weight[i / 2] * pair;
   }
-  const double error = half * std::abs(kronrod - gauss);
-  if (depth >= 40 || error <= std::max(tolerance, 1e-14 * half * kronrod)) return half * kronrod;
-  return integral(f, a, middle, tolerance / 2, depth + 1) + integral(f, middle, b, tolerance / 2, depth + 1);
+  return {half * kronrod, half * std::abs(kronrod - gauss)};
+}
+
+// Halves what is off by more than `tolerance`, twenty times at most: what is left then is rounding.
+double integral(const std::function<double(double)>& f, double a, double b, double tolerance, int depth = 0) {
+  const Panel whole = panel(f, a, b);
+  if (depth == 20 || whole.error <= std::max(tolerance, 1e-13 * std::abs(whole.value))) return whole.value;
+  return integral(f, a, (a + b) / 2, tolerance, depth + 1) + integral(f, (a + b) / 2, b, tolerance, depth + 1);
+}
+
+// theta - sin theta without loss.
+double less_sine(double theta) {
+  const double t = theta * theta;
+  if (t > 0.04) return theta - std::sin(theta);
+  return theta * t / 6 * (1 - t / 20 * (1 - t / 42 * (1 - t / 72 * (1 - t / 110 * (1 - t / 156)))));
 }
 
 // The part of the lift that is done at a tilt, over m g r: cos(alpha - theta) - cos alpha.
@@ -112,8 +127,11 @@ public:
       h = std::min(h, end - t);
       State error;
       const State next = motion.step(t, y, h, error);
-      const double scale = tolerance_ * rocker_.balance;
-      const double wrong = std::max(std::abs(error[0]), std::abs(error[1]) / rate_) / scale;
+      // Relative to what there is, from a thousandth of alpha on: just above the threshold it grows as cosh.
+      const double least = 1e-3 * rocker_.balance;
+      const double wrong = std::max(std::abs(error[0]) / std::max(std::abs(y[0]), least),
+                                    std::abs(error[1]) / (rate_ * std::max(std::abs(y[1] / rate_), least))) /
+                           tolerance_;
       const double factor = 0.9 * std::pow(std::max(wrong, 1e-10), -0.2);
       if (wrong > 1 && h > 1e-14 * end) {
         h *= std::max(factor, 0.2);
@@ -196,18 +214,19 @@ double Rocker::least_impulse() const {
 }
 
 double Rocker::least_duration(double force) const {
-  const double weight = mass * gravity * radius, over = force * lever / weight;
-  if (!(force > threshold())) return infinity;
-  const double work = lifted(balance, balance) / over; // theta_1 or its sine
+  const double over = force / threshold();
+  if (!(over > 1)) return infinity;
+  const double sine = std::sin(balance), cosine = std::cos(balance);
+  const double work = lifted(balance, balance) / (over * sine); // theta_1 or its sine
   const double end = turns_with_body ? work : std::asin(work);
   // theta = end s^2 takes the root of omega at 0 away.
-  const double omega2 = 2 * weight / inertia;
+  const double omega2 = 2 * mass * gravity * radius / inertia;
   const auto slowness = [&](double s) {
-    const double theta = end * s * s, half = std::sin(theta / 2), arm = turns_with_body ? theta : std::sin(theta);
-    const double gained = over * arm - std::sin(balance) * std::sin(theta) + 2 * std::cos(balance) * half * half;
-    return 2 * end * s / std::sqrt(omega2 * gained);
+    const double theta = end * s * s, half = std::sin(theta / 2);
+    const double arm = turns_with_body ? theta : std::sin(theta), more = turns_with_body ? less_sine(theta) : 0;
+    return 2 * end * s / std::sqrt(omega2 * (sine * ((over - 1) * arm + more) + 2 * cosine * half * half));
   };
-  return integral(slowness, 0, 1, 1e-15 / std::sqrt(omega2));
+  return integral(slowness, 0, 1, 1e-14 * panel(slowness, 0, 1).value);
 }
 
 double Profile::impulse() const {

@@ -59,8 +59,8 @@ struct PushResult {
   double friction_time = 0; ///< when
 };
 
-/// Dormand and Prince's method of order 5(4), `tolerance` the error of a step relative to alpha and sqrt(m g r/I) alpha.
-/// Where the push has ended, energy decides. Throws Error(bad_argument) as check() does, and for a rocker that has no
+/// Dormand and Prince's method of order 5(4), `tolerance` the error of a step relative to theta and omega, of those
+/// at least alpha/1000 and sqrt(m g r/I) alpha/1000. Where the push has ended, energy decides. Throws Error(bad_argument) as check() does, and for a rocker that has no
 /// threshold: alpha, lever, mass and inertia above 0.
 PushResult push(const Rocker& rocker, const Profile& profile, double tolerance = 1e-12);
 

@@ -198,11 +198,13 @@ Contact contact(std::span<const Vec3> vertices, const Vec3& barycentre, double t
   }
   const double noise = touching * size;
   std::vector<Vec2> flat; // (z, x) from the barycentre's foot: counter-clockwise about y
-  for (const Vec3& v : vertices)
-    if (v.y() <= found.ground + std::max(tolerance, 10 * noise)) {
-      found.support.push_back(v);
-      flat.emplace_back(v.z() - barycentre.z(), v.x() - barycentre.x());
-    }
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec3& v = vertices[i];
+    if (v.y() > found.ground + std::max(tolerance, 10 * noise)) continue;
+    found.vertices.push_back(i);
+    found.support.push_back(v);
+    flat.emplace_back(v.z() - barycentre.z(), v.x() - barycentre.x());
+  }
   if (flat.empty()) no_facet("it has no vertex");
   std::vector<Vec2> polygon;
   for (const std::size_t i : hull(flat, noise)) {

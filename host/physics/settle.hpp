@@ -25,14 +25,15 @@ struct Attitude {
   bool balanced = false; ///< stood on a corner or an edge, b right above: it was let fall to the right, or off the edge
 };
 
-/// Rolls a body down from the attitude as modelled. Throws Error(cannot_stand) for a barycentre that the convex hull of the
-/// vertices does not hold inside (parts of negative mass), and for fewer than four vertices or flat ones.
+/// Rolls a body down from the attitude as modelled. Throws Error(cannot_stand) where the barycentre comes down to the ground:
+/// it lies outside the convex hull of the vertices then (parts of negative mass), or they are flat.
 Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre);
 
 /// Where a body touches the ground.
 struct Contact {
-  double ground = 0;         ///< y of the ground: the lowest vertex
-  std::vector<Vec3> support; ///< vertices no more than the tolerance above it, as they stand
+  double ground = 0;                 ///< y of the ground: the lowest vertex
+  std::vector<std::size_t> vertices; ///< indices of those no more than the tolerance above it
+  std::vector<Vec3> support;         ///< where they are
   std::vector<Vec3>
       patch; ///< corners of their convex hull seen from above, counter-clockwise about y; 1 or 2 if it has no area
   double margin = 0; ///< distance of the barycentre's foot from the patch's border, below 0 outside

@@ -41,16 +41,24 @@ std::pair<double, double> z_range(const std::vector<Vec3>& points) {
   return {low->z(), high->z()};
 }
 
-// The longest edge, of the triangles with a vertex that touches the ground.
-double contact_spacing(const TipBody& body, double top) {
+// The longest edge of the triangles with a vertex that touches the ground.
+double contact_spacing(const TipBody& body, const std::vector<std::size_t>& touching) {
+  std::vector<bool> touches(body.vertices.size(), false);
+  for (const std::size_t v : touching) touches[v] = true;
   double longest = 0;
-  for (const Face& face : body.faces) {
-    bool touches = false;
-    for (const std::uint32_t v : face) touches = touches || body.vertices[v].y() <= top;
-    for (std::size_t c = 0; touches && c < 3; ++c)
+  for (const Face& face : body.faces)
+    for (std::size_t c = 0; (touches[face[0]] || touches[face[1]] || touches[face[2]]) && c < 3; ++c)
       longest = std::max(longest, (body.vertices[face[c]] - body.vertices[face[(c + 1) % 3]]).norm());
-  }
   return longest;
+}
+
+// Whether the foot that a body would turn about is under its barycentre; the only foot always is.
+bool rolls_over(const Stance& stance, const Vec3& support) {
+  const double z = stance.body.barycentre.z();
+  if (stance.feet.size() == 1) return true;
+  for (const Foot& foot : stance.feet)
+    if (foot.left <= support.z() && support.z() <= foot.right && foot.left <= z && z <= foot.right) return true;
+  return false;
 }
 
 // The support point farthest to a side; of several the one nearest to the barycentre fore and aft.
@@ -112,11 +120,12 @@ Stance stand(TipBody body, const StandOptions& options) {
   const double size = size_of(body);
   stance.contact = contact(body.vertices, body.barycentre, options.contact_tolerance);
   const auto [left, right] = z_range(stance.contact.support);
-  double spacing = 0;
-  for (const Vec3& p : stance.contact.support) spacing = std::max(spacing, p.y());
-  spacing = body.smooth ? contact_spacing(body, spacing) : 0;
-  const double slack = body.smooth ? 2 * spacing : 1e-9 * size, z = body.barycentre.z();
-  stance.rolls = body.smooth && right - left <= slack;
+  const double z = body.barycentre.z();
+  double slack = 1e-9 * size;
+  if (body.smooth) {
+    stance.feet = feet(body.vertices, body.faces, stance.contact.vertices, stance.contact.ground, size);
+    if (stance.feet.size() == 1) slack = contact_spacing(body, stance.contact.vertices);
+  }
   if (z < left - slack || z > right + slack)
     throw Error(
         Fault::cannot_stand,
@@ -125,7 +134,7 @@ Stance stand(TipBody body, const StandOptions& options) {
                     z, left, right, z < left ? "left" : "right",
                     options.as_modelled ? "; leave --as-modelled out to let it settle, or raise --contact-tolerance"
                                         : ""));
-  stance.held = stance.contact.margin < -1e-9 * size && !stance.rolls;
+  stance.held = stance.contact.margin < -std::max(slack, 1e-9 * size);
   stance.body = std::move(body);
   return stance;
 }
@@ -150,7 +159,8 @@ Tipping tipping(const Stance& stance, Side side) {
   t.side = side;
   t.support = farthest(stance.contact.support, sign, b, negligible * size);
   t.pivot = {b.x(), t.support.y(), t.support.z()};
-  if (stance.rolls) t.support = t.pivot = {b.x(), stance.contact.ground, b.z()};
+  t.rolls = rolls_over(stance, t.support);
+  if (t.rolls) t.support = t.pivot = {b.x(), stance.contact.ground, b.z()};
   t.offset = std::max(sign * (t.pivot.z() - b.z()), 0.0);
   if (t.offset <= negligible * size) t.offset = 0;
   t.height = b.y() - t.pivot.y();

@@ -15,6 +15,7 @@
 
 #include "host/mesh/body.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/physics/feet.hpp"
 #include "host/physics/settle.hpp"
 
 #include <Eigen/Core>
@@ -55,8 +56,7 @@ struct Stance {
   TipBody body;
   Attitude attitude;
   Contact contact;
-  bool rolls =
-      false;         ///< a smooth body whose contact is no wider than its triangles: it touches at one point or along x
+  std::vector<Foot> feet; ///< of a smooth body
   bool held = false; ///< the barycentre is over the patch sideways but not fore and aft: something else must hold it
 };
 
@@ -70,6 +70,7 @@ std::string name(Side side);
 /// What begins to tip a body over to one side; forces in units of its weight.
 struct Tipping {
   Side side = Side::right;
+  bool rolls = false; ///< a smooth body whose outermost foot is under the barycentre: it rolls over it, and d = 0
   Vec3 support = Vec3::Zero();   ///< the support point that the pivot is the projection of
   Vec3 pivot = Vec3::Zero();     ///< p
   Vec3 point = Vec3::Zero();     ///< p_T

@@ -1,0 +1,51 @@
+#include "host/cli/tip_plot.hpp"
+
+#include "host/plot/plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cowgpu::cli {
+
+void check_tip_plot(const std::string& path) {
+  plot::picture_format(path);
+}
+
+void write_tip_plot(const physics::Rocker& rocker, const PushOptions& options, const PushPlan& plan,
+                    const std::string& path) {
+  const double threshold = rocker.threshold();
+  plot::Plot picture;
+  picture.x = {.label = "force", .unit = "N", .scale = plot::Scale::logarithmic};
+  picture.y = {.label = "duration", .unit = "s", .scale = plot::Scale::logarithmic};
+  plot::Series boundary{.name = "just tips", .x = {}, .y = {}};
+  plot::Series blow{.name = fmt::format("smallest impulse, {:.4g} N s", rocker.least_impulse()), .x = {}, .y = {}};
+  blow.dash = plot::Dash::dotted;
+  const double last = 3 * std::max(10 * threshold, plan.punch);
+  for (double over = 1e-4; (1 + over) * threshold < last; over *= 1.08) {
+    const double force = (1 + over) * threshold;
+    boundary.x.push_back(force);
+    boundary.y.push_back(rocker.least_duration(force));
+    blow.x.push_back(force);
+    blow.y.push_back(rocker.least_impulse() / force);
+  }
+  plot::Region tips{.name = "tips over", .x = boundary.x, .low = boundary.y, .high = {}};
+  tips.high.assign(boundary.x.size(), std::numeric_limits<double>::infinity());
+  picture.regions = {tips};
+  picture.series = {boundary, blow};
+  picture.lines = {{true, threshold, fmt::format("threshold, {:.4g} N", threshold)},
+                   {true, plan.sustained, options.sustained + " sustained"}};
+  picture.x.low = 0.7 * std::min(threshold, plan.sustained);
+  const double least = rocker.least_duration(plan.punch);
+  if (std::isfinite(least))
+    picture.points = {{plan.punch, least, fmt::format("{} punch: {:.3g} s", options.punch, least)}};
+  if (plan.punch_duration)
+    picture.points.push_back({plan.punch, *plan.punch_duration,
+                              fmt::format("{} for {}", options.punch, options.punch_duration), plot::black,
+                              plot::Marker::cross});
+  plot::write_plot(picture, path);
+}
+
+} // namespace cowgpu::cli
