@@ -51,13 +51,14 @@ std::vector<SurfaceFile> read_surfaces(const std::string& path, const json& docu
 
 /// The text of a document of findings. It may be any JSON object that names its schema.
 std::string read_findings(const std::string& path) {
-  const json document = result_json::parse(path);
+  std::string text = read_file(path); // once: it may be a pipe
+  const json document = result_json::parse(path, text);
   const json& schema = result_json::member(path, document, "schema");
   if (!schema.is_string() || schema.get<std::string>().rfind("cowgpu.", 0) != 0)
     throw Error(Fault::file_format, fmt::format("{}: this JSON is no document of cowgpu; take what `cowgpu tensors "
                                                 "--json`, `radiate --json` and the like print",
                                                 path));
-  return read_file(path);
+  return text;
 }
 
 /// The distances of all orders from the mesh.

@@ -45,7 +45,10 @@ void check_brackets(const std::string& name, const std::string& bytes) {
 } // namespace
 
 json parse(const std::filesystem::path& path) {
-  const std::string name = path.string(), bytes = read_file(path);
+  return parse(path.string(), read_file(path));
+}
+
+json parse(const std::string& name, const std::string& bytes) {
   check_brackets(name, bytes);
   try {
     return json::parse(bytes);

@@ -14,7 +14,10 @@ namespace cowgpu::result_json {
 /// The file's document, of any kind. Throws Error(cannot_read, too_large), file_syntax where it is no JSON.
 nlohmann::json parse(const std::filesystem::path& path);
 
-/// The same; Error(file_format) where it is another document than a cowgpu.result.v1.
+/// The same of bytes that were read; `name` is the file's.
+nlohmann::json parse(const std::string& name, const std::string& bytes);
+
+/// A file; Error(file_format) where it is another document than a cowgpu.result.v1.
 nlohmann::json read(const std::filesystem::path& path);
 
 /// A member of an object; `name` is the file's. Throws Error(file_format) where there is none.

@@ -168,7 +168,7 @@ int page_resolution(int order) {
 
 std::vector<fs::path> page_folders() {
   std::vector<fs::path> folders;
-  if (const char* given = std::getenv("COWGPU_PAGE"); given && *given) folders.emplace_back(given);
+  if (const char* given = std::getenv("COWGPU_PAGE"); given && *given) return {given};
   std::error_code failed;
   const auto program = fs::read_symlink("/proc/self/exe", failed);
   if (failed) return folders;

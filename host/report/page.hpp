@@ -50,8 +50,8 @@ struct PageDocument {
 /// The degree of the grid a page shows surfaces to this order on: a wavelength has four points, and 128 degrees suffice.
 int page_resolution(int order);
 
-/// Where the page without data, report.html, is looked for: the folder in COWGPU_PAGE, beside an installed program
-/// (share/cowgpu/page), beside a built one (page/), in that order.
+/// Where the page without data, report.html, is looked for: the folder in COWGPU_PAGE alone where that is set, else beside an
+/// installed program (share/cowgpu/page), then beside a built one (page/).
 std::vector<std::filesystem::path> page_folders();
 
 /// The page without data. Throws Error(page_missing) with where it was looked for and how it is built, cannot_read, and

@@ -96,8 +96,8 @@ export class WebglBody {
     if (!point) return;
     this.marker.position.set(...point);
     this.halo.position.set(...point);
-    this.marker.scale.setScalar(0.012 * this.frame.radius);
-    this.halo.scale.setScalar(0.035 * this.frame.radius);
+    this.marker.scale.setScalar(0.016 * this.frame.radius);
+    this.halo.scale.setScalar(0.04 * this.frame.radius);
   }
 
   frameAt(frame) {

@@ -1,6 +1,6 @@
 // The tabs that are read: coefficients, physics, where it all comes from.
 import { index, count } from "./data.js";
-import { copyButton, el } from "./dom.js";
+import { $, copyButton, el } from "./dom.js";
 import { components, notKnown, number, plain, thousands, words } from "./format.js";
 import { fieldNames } from "./model.js";
 import { table } from "./table.js";
@@ -24,7 +24,7 @@ const isTable = (value) => value && typeof value === "object" && Array.isArray(v
 const isMatrix = (value) => Array.isArray(value) && value.length > 0 && value.every(Array.isArray);
 
 function matrix(rows) {
-  return el("table", { class: "matrix" }, el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map((value) => el("td", {}, valueText(value)))))));
+  return el("table", { class: "matrix" }, el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map((value) => el("td", {}, typeof value === "number" ? number(value) : valueText(value)))))));
 }
 
 function valueText(value) {
@@ -160,7 +160,9 @@ export function provenance(data) {
     ["program", `${data.program.name} ${data.program.version}`],
     ["command", lineOf(data.command)],
     ["created", data.created],
-    ["drawn with", "three.js (MIT), d3-geo, d3-geo-projection, d3-scale, d3-scale-chromatic (ISC)"],
+    ["drawn with", "three.js, d3-geo, d3-geo-projection, d3-scale, d3-scale-chromatic"],
   ]));
+  const licences = $("licences").textContent;
+  part.append(el("details", {}, el("summary", {}, "Licences of what it is drawn with"), el("pre", {}, licences)));
   return part;
 }

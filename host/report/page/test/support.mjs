@@ -11,9 +11,10 @@ export const file = (name) => join(folder, name);
 export const text = (name) => readFileSync(file(name), "utf8");
 export const json = (name) => JSON.parse(text(name));
 
-/// Runs the program on the CPU path; returns what it printed.
-export const run = (...words) =>
-  execFileSync(process.env.COWGPU_PROGRAM, [...words, "--device", "cpu"], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], maxBuffer: 1e9 });
+/// Runs the program; returns what it printed.
+export const print = (...words) => execFileSync(process.env.COWGPU_PROGRAM, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], maxBuffer: 1e9 });
+/// The same on the CPU path.
+export const run = (...words) => print(...words, "--device", "cpu");
 
 /// The data of a page that `cowgpu report` wrote.
 export function dataOf(page) {
