@@ -45,8 +45,6 @@ foreach(folder "" mesh/ map/ spectrum/ flow/ io/ physics/)
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/host/plan/bvh.hpp ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # held by classes of theirs
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/plan COMPONENT development)
-install(FILES ${PROJECT_SOURCE_DIR}/host/reference/potential.hpp # one place, any precision
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/reference COMPONENT development)
 install(EXPORT cowgpu-targets NAMESPACE cowgpu:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/cowgpu COMPONENT development)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/cowgpu-config.cmake CONTENT [[
 include(CMakeFindDependencyMacro)

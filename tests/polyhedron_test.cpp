@@ -266,3 +266,17 @@ TEST_CASE("errors by order and distance fall as the series does, and say from wh
   CHECK(errors.truth_error <= 1e-13);
   CHECK_THROWS_AS(physics::series_errors(body, {0}, {0.5}, *backend, 0, silent), Error);
 }
+
+TEST_CASE("the benchmark cow is spherical to 1e-3 from 18 of its radii on, and a quadrupole from 5 on",
+          "[potential][slow]") {
+  if (!benchmark_cow()) return skip_without_cow();
+  const Body cow = make_body(*benchmark_cow(), {}, 1);
+  const auto backend = make_cpu_backend();
+  Monitor silent;
+  const auto errors = physics::series_errors(cow, {0, 2, 8}, {1.5}, *backend, 0, silent);
+  CHECK(*errors.good_from[0].distance[0] == Approx(17.63).epsilon(1e-3));
+  CHECK(*errors.good_from[1].distance[0] == Approx(5.048).epsilon(1e-3));
+  CHECK(*errors.good_from[2].distance[2] == Approx(7.462).epsilon(1e-3));
+  CHECK(errors.rows[2].potential_max == Approx(3.397e-4).epsilon(1e-3));
+  check_at_most(errors.truth_error, 1e-14, "series of degree 40 against the polyhedron at 10 radii");
+}

@@ -37,9 +37,9 @@ public:
   /// Lanes a batch may have: so many that a dispatch ends within a second.
   std::uint32_t most_lanes() const;
 
-  /// Sums for a batch of tops.size() lanes, at least 1 and at most most_lanes(): `points` is [lane][x', y', z', its rest, q, J_00][4],
-  /// `tops` each lane's degree, `sums` [lane][set][4]. `hook` gets the part of the table that is done. Throws
-  /// Error(cut_short) where the device ended a loop early, Error(stopped), Error(vulkan), Error(device_lost).
+  /// Sums for a batch of tops.size() lanes, at least 1 and at most most_lanes(): `points` is [lane][input][4] with the inputs
+  /// x', y', z', its rest, q, J_00; `tops` each lane's degree, `sums` [lane][set][4]. `hook` gets the part of the table that is
+  /// done. Throws Error(cut_short) where the device ended a loop early, Error(stopped), Error(vulkan), Error(device_lost).
   void sum(std::span<const double> points, std::span<const std::uint32_t> tops, std::span<double> sums,
            const Hook& hook);
 

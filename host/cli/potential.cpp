@@ -24,7 +24,7 @@ namespace {
 using namespace physics;
 
 constexpr int usual_degree = 32;
-constexpr std::size_t most_shown = 200; // points on the screen and in the JSON
+constexpr std::size_t most_shown = 20, most_in_json = 200; // points
 
 struct Options {
   PlaceOptions places;
@@ -183,9 +183,9 @@ void add_ranges(const Solved& s, Findings& found) {
   found.rows.push_back({name + "_max", "greatest " + name, high, s.units.force});
 }
 
-void add_table(const Solved& s, Findings& found) {
+void add_table(const Solved& s, bool json, Findings& found) {
   const std::size_t count = s.places.points.size();
-  if (count > most_shown) {
+  if (count > (json ? most_in_json : most_shown)) {
     found.notes.push_back(fmt::format("{} points: -o FILE.csv writes each of them", count));
     return;
   }
@@ -306,7 +306,7 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
                  metric ? (options.charge ? "N m^2/C^2" : "m^3/(kg s^2)") : ""},
                 {"lmax", "series to degree", options.exact ? Value() : Value(double(s.lmax))},
                 {"origin", "origin", s.frame.origin, s.units.length},
-                {"brillouin_radius", "radius of the sphere that holds the body", s.frame.radius, s.units.length},
+                {"brillouin_radius", "Brillouin radius", s.frame.radius, s.units.length},
                 {"places", "places", s.places.name},
                 {"point_count", "points", double(s.places.points.size())},
                 {"exact_count", "of them by the polyhedron", double(s.exact_points)}};
@@ -371,7 +371,7 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
     add_one_point(s, found);
   } else {
     add_ranges(s, found);
-    add_table(s, found);
+    add_table(s, own.json, found);
   }
   found.rows.push_back({"device", "device", device_line(backend->facts())});
   if (own.paper()) found.paper = beside_paper();

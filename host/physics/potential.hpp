@@ -58,7 +58,7 @@ struct SeriesErrors {
   std::vector<double> ladder;             ///< distances that good_from was measured at
   std::vector<std::vector<double>> worst; ///< [order][of the ladder]: the larger of both largest errors
   std::size_t directions = 0;             ///< of the sphere
-  int truth_degree = 0; ///< beyond `truth_from` radii the truth is the series to this degree,
+  int truth_degree = 0;                   ///< beyond `truth_from` radii the truth is the series to this degree,
   double truth_from = 0;
   double truth_error = 0; ///< which there differs so much from the polyhedron
 };
