@@ -126,6 +126,19 @@ TEST_CASE("a push that lasts: pulse and table, body and space, and the boundary 
   CHECK(never_tips == 2); // 50 N and the threshold itself
 }
 
+TEST_CASE("the boundary is drawn where there is one", "[tip][cli]") {
+  const TemporaryFolder folder;
+  const std::string picture = folder / "boundary.svg";
+  const ProgramRun run = run_program(with(with({"tip"}, crate), {"--plot", picture, "--punch-duration", "20ms"}));
+  CHECK(run.exit_code == 0);
+  std::ifstream file(picture);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  CHECK_THAT(text, Contains("<svg"));
+  refused(with(crate, {"--plot", folder / "boundary.gif"}), 2, "boundary.gif");
+  refused({"builtin:box", "--plot", picture}, 2, "--length");
+  refused(with(crate, {"--plot", folder / "nowhere/boundary.png"}), 5, "nowhere");
+}
+
 TEST_CASE("tip at orders of the expansion: the ball needs nothing, high orders what the body does", "[tip][cli]") {
   const json found = answer({"builtin:cow@2", "--length", "2.5m", "--density", "1g/cm3", "--order", "0,1,20,full"});
   const json& orders = found["orders"];
@@ -139,6 +152,16 @@ TEST_CASE("tip at orders of the expansion: the ball needs nothing, high orders w
   for (const json& entry : orders)
     for (const char* key : {"pivot", "point", "direction"}) CHECK(entry[key].size() == 3);
   CHECK(orders[2]["force_N"].get<double>() == Approx(orders[3]["force_N"].get<double>()).epsilon(0.25));
+}
+
+TEST_CASE("an order that cannot stand as modelled has no force, and the row says why", "[tip][cli]") {
+  const json found = answer({"builtin:cow@2", "--as-modelled", "--order", "0,3"});
+  CHECK(found["orders"][0]["force_over_weight"] == 0);
+  const json& third = found["orders"][1];
+  for (const char* key : {"pivot", "point", "side", "force_N", "force_over_weight", "force_N_paper_balance"})
+    CHECK(third[key].is_null());
+  CHECK_THAT(third["note"].get<std::string>(), Contains("cannot stand") && Contains("falls to the"));
+  CHECK(found["orders"][2]["force_over_weight"].get<double>() > 0.1);
 }
 
 TEST_CASE("tip from files of surface coefficients is that of the mesh's orders", "[tip][cli]") {

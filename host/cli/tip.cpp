@@ -3,6 +3,7 @@
 #include "host/cli/tip_push.hpp"
 
 #include "host/error.hpp"
+#include "host/io/mesh_source.hpp"
 #include "host/physics/paper.hpp"
 #include "host/spectrum/expand_surface.hpp"
 #include "host/units.hpp"
@@ -137,7 +138,8 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
         throw;
       std::vector<Value> row(table.columns.size());
       row.front() = double(order);
-      row.back() = std::string(error.what());
+      const std::string reason = error.what();
+      row.back() = reason.substr(0, reason.find(';')); // without the advice
       table.rows.push_back(std::move(row));
     }
   }
@@ -230,6 +232,7 @@ std::vector<Comparison> beside_paper(const TipInput& input, const Options& optio
   add("settled, N", t.force * weight);
   add("settled, its balance, N", t.force_paper_balance * weight);
   if (t.force_paper_literal) add("settled, its arm in space, N", *t.force_paper_literal * weight);
+  if (input.head.input_sha256 != benchmark_sha256) return rows;
   for (const auto& [what, tolerance] :
        {std::pair("hind hooves' tips", 0.0), std::pair("hind hooves", 0.005), std::pair("all hooves", 0.01)}) {
     const Stood modelled = stand_up(input.full, {true, tolerance * input.unit}, "weaker");
@@ -245,13 +248,13 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
     for (const std::string& file : input_files(common.body)) refuse_same_file(file, options.plot);
   }
   TipInput input = load_tip_input(common, options.choice, program);
-  if (!input.metric && (plan.profile || plan.punch_duration))
+  if (!input.metric && (plan.profile || plan.punch_duration || !options.plot.empty()))
     throw Error(Fault::bad_argument,
-                "--push and --punch-duration are about newtons and seconds: add --length, how long "
+                "--push, --punch-duration and --plot are about newtons and seconds: add --length, how long "
                 "the body is, or --length-unit, and its --density");
   const StandOptions how = stand_options(options, input);
   const Stood stood = stand_up(input.full, how, options.side);
-  Findings found = std::move(input.head);
+  Findings found = input.head;
   ConsoleMonitor monitor(program.style());
   add_notes(stood, input, options, found);
   add_force_rows(stood, input, options, found);
