@@ -70,6 +70,7 @@ TEST_CASE("tip of a box in newtons, and in its weight where no unit is stated", 
   const json plain = answer({"builtin:box:1,2,0.8", "--side", "left"});
   CHECK(plain["force_N"].is_null());
   CHECK(plain["force_over_weight"].get<double>() == Approx(0.2 / r).epsilon(1e-13));
+  CHECK(plain["force_over_weight_paper_balance"].get<double>() == Approx(0.4 / (r + 0.16 / r)).epsilon(1e-13));
   CHECK(plain["side"] == "left");
   CHECK_FALSE(plain.contains("boundary"));
   CHECK_THAT(plain["notes"].dump(), Contains("units of the body's weight"));
@@ -152,6 +153,21 @@ TEST_CASE("tip at orders of the expansion: the ball needs nothing, high orders w
   for (const json& entry : orders)
     for (const char* key : {"pivot", "point", "direction"}) CHECK(entry[key].size() == 3);
   CHECK(orders[2]["force_N"].get<double>() == Approx(orders[3]["force_N"].get<double>()).epsilon(0.25));
+}
+
+TEST_CASE("a ball as a smooth body is tipped by nothing; as a polyhedron it stands on a facet, and the note says so",
+          "[tip][cli]") {
+  const std::vector<std::string> ball = {"builtin:sphere:0.5@5", "--length-unit", "1m"};
+  const json smooth = answer(with(ball, {"--smooth"}));
+  CHECK(smooth["force_N"] == 0);
+  CHECK(smooth["friction_needed"] == 0);
+  CHECK_FALSE(smooth.contains("boundary"));
+  CHECK_THAT(smooth["notes"].dump(), Contains("rolls over") && Contains("any push tips it"));
+  const json facets = answer(ball);
+  CHECK(facets["force_N"].get<double>() > 0);
+  CHECK_THAT(facets["notes"].dump(), Contains("--smooth"));
+  CHECK_THAT(answer(crate)["notes"].dump(), !Contains("--smooth"));
+  CHECK(answer({"builtin:sphere:0.5@5", "--as-modelled"})["force_over_weight"] == 0);
 }
 
 TEST_CASE("an order that cannot stand as modelled has no force, and the row says why", "[tip][cli]") {
