@@ -270,7 +270,7 @@ refuses(radiate, found, "an exponent among all digits")
 tip = load_schema("tip")
 with tempfile.TemporaryDirectory() as folder:
     surface, push = os.path.join(folder, "cow.json"), os.path.join(folder, "push.csv")
-    expand("builtin:cow@1", "--of", "smooth", "--lmax", "5", "--device", "cpu", "-o", surface)
+    expand("builtin:cow@1", "--of", "smooth", "--lmax", "5", "--device", "cpu", "--json", "-o", surface)
     with open(push, "w", encoding="utf-8") as file:
         file.write("time,force\n0,0\n0.1,5000\n0.2,0\n")
     for arguments in (
