@@ -7,6 +7,7 @@
 #include "host/image.hpp"
 #include "host/kernel_time.hpp"
 #include "host/monitor.hpp"
+#include "host/potential.hpp"
 #include "host/render.hpp"
 #include "host/sphere_samples.hpp"
 #include "host/sphere_transform.hpp"
@@ -118,6 +119,15 @@ public:
 
   /// Upper bound of the memory a flow of so many starts allocates, its result included, streamlines not.
   virtual MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const = 0;
+
+  /// V(x) = integral of density(y) / |x - y| outside a body, its gradient and its second derivatives, from its moments: the
+  /// mathematics stands in host/plan/potential.hpp. Throws Error(point_inside) for a point nearer to the moments' origin
+  /// than R, bad_argument, too_large, device_failed, device_lost, interrupted. The same problem on the same device gives the
+  /// same bits. Of the report, seconds, setup_seconds, elements, full_elements and kernels are set.
+  virtual PotentialField potential(const PotentialProblem& problem, Monitor& monitor, RunReport* report = nullptr) = 0;
+
+  /// Upper bound of the memory potential() allocates at so many points, its result included.
+  virtual MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives) const = 0;
 
   /// The scene as a picture: smooth or flat shading, light from the upper left, the light of sky and ground where the
   /// surroundings let it through, edges with 16 samples a pixel. The same scene gives the same picture on any number of

@@ -58,6 +58,11 @@ constexpr Unit units[] = {
     {Dimension::force, "kN", 1e3},
     {Dimension::force, "kgf", 9.80665},
     {Dimension::force, "lbf", 0.45359237 * 9.80665},
+    {Dimension::charge_density, "C/m3", 1},
+    {Dimension::charge_density, "mC/m3", 1e-3},
+    {Dimension::charge_density, "uC/m3", 1e-6},
+    {Dimension::charge_density, "nC/m3", 1e-9},
+    {Dimension::charge_density, "C/cm3", 1e6},
 };
 
 std::string names(Dimension dimension) {

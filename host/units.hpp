@@ -5,8 +5,8 @@
 
 namespace cowgpu {
 
-/// What a quantity measures. Values are held in the SI unit: m, kg/m3, s, rad/s, kg, N.
-enum class Dimension { length, density, time, angular_rate, mass, force };
+/// What a quantity measures. Values are held in the SI unit: m, kg/m3, s, rad/s, kg, N, C/m3.
+enum class Dimension { length, density, time, angular_rate, mass, force, charge_density };
 
 /// Seconds.
 inline constexpr double julian_year = 365.25 * 86400;
@@ -21,7 +21,8 @@ struct Measure {
 /// Reads "2.7g/cm3", "2.7 g/cm^3", "300kg/m3", "12 km", "1e-3": a finite number and, next to it or after blanks, a unit or
 /// none. Units of length: nm um mm cm m km in ft au R_earth (6371 km); of density: kg/m3 g/cm3 g/m3 kg/l g/l t/m3 lb/ft3;
 /// of time: s ms min h d yr kyr Myr Gyr, a year being Julian, 365.25 days of 86400 s; of angular rate: rad/s deg/s rpm, and
-/// /s and Hz, which are both 1 rad/s; of mass: kg g t lb; of force: N kN kgf lbf.
+/// /s and Hz, which are both 1 rad/s; of mass: kg g t lb; of force: N kN kgf lbf;
+/// of charge density: C/m3 mC/m3 uC/m3 nC/m3 C/cm3.
 /// `option` opens the messages. Throws Error(bad_argument) with the units that there are.
 Measure parse_measure(std::string_view option, std::string_view text, Dimension dimension);
 

@@ -25,6 +25,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/map", {"host", "host/mesh"}},
     {"host/spectrum", {"host", "host/mesh", "host/map", "host/plan", "host/reference"}},
     {"host/flow", {"host", "host/mesh", "host/map", "host/spectrum"}},
+    {"host/physics", {"host", "host/mesh", "host/io", "host/spectrum", "host/reference"}},
+    {"host/report", {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics"}},
     {"host/physics", {"host", "host/mesh", "host/io", "host/spectrum"}},
     {"host/plot", {"host", "host/io"}},
     {"host/report",

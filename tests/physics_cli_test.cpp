@@ -69,6 +69,7 @@ TEST_CASE("coefficients of the wrong kind are bad input, and a missing second mo
   REQUIRE(run_program({"expand", "builtin:cow@1", "--of", "smooth", "--lmax", "4", "--device", "cpu", "-o", surface})
               .exit_code == 0);
   for (const char* command : {"tensors", "radiate"}) refused({command, surface}, 3, "of a surface");
+  refused({"tides", surface, "--orbit", "1au"}, 3, "of a surface");
   const std::string low = folder / "low.csv";
   REQUIRE(run_program({"expand", "builtin:cow@1", "--lmax", "1", "--device", "cpu", "-o", low}).exit_code == 0);
   for (const char* command : {"tensors", "radiate"}) refused({command, low}, 3, "degree 1");
@@ -79,7 +80,14 @@ TEST_CASE("coefficients of the wrong kind are bad input, and a missing second mo
             "fully_normalized\nend_of_head\ngfc 0 0 1 0\ngfc 1 0 0 0\ngfc 1 1 0 0\ngfc 2 0 -4.84165e-4 0\ngfc 2 1 0 "
             "0\ngfc 2 2 2.439e-6 -1.4e-6\n";
   }
-  refused({"tensors", potential}, 3, "second moment");
+  const json known = answer({"tensors", potential});
+  CHECK(known["inertia"].is_null());
+  CHECK(known["principal_moments"].is_null());
+  CHECK(known["quadrupole"][2][2].get<double>() < 0);
+  CHECK(known["notes"].dump().find("second moment") != std::string::npos);
+  refused({"tensors", potential, "--inertia"}, 3, "second moment");
+  refused({"tides", potential, "--orbit", "1au"}, 3, "second moment");
+  refused({"drop", potential, "--height", "1m"}, 3, "lowest point");
   const json waves = answer({"radiate", potential, "--axis", "z", "--period", "86164s"});
   CHECK(waves["power_W"].get<double>() > 0);
   CHECK(waves["timescale_s"].is_null());
@@ -116,7 +124,7 @@ TEST_CASE("radiate says how a frequency is read, and refuses words that mean not
   refused(with({"--length-unit", "1m"}), 2, "leave one out");
   refused({"radiate", "builtin:box", "--length", "3"}, 2, "3 of what");
   refused({"radiate", "builtin:box", "--length", "-3m"}, 2, "above 0");
-  refused({"radiate", "builtin:box", "--part", "builtin:box=-1", "--origin", "mesh"}, 2, "centre of mass");
+  refused({"radiate", "builtin:box", "--part", "builtin:box=-1", "--origin", "mesh"}, 2, "change --density");
   refused({"radiate", "builtin:box", "--recipe", "paper", "--axis", "x"}, 2, "--recipe paper");
 }
 
@@ -150,5 +158,108 @@ TEST_CASE("the paper's recipe shows the paper's numbers beside ours", "[physics]
     if (what == "quadrupole xz" || what == "quadrupole yz" || what.find("Q_22") != std::string::npos) continue;
     INFO(row.dump());
     CHECK(std::abs(row["relative_difference"].get<double>()) < 0.021);
+  }
+}
+
+TEST_CASE("tides of a box in orbit: closed forms, from the mesh and from its coefficients", "[physics][cli]") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "box.json";
+  const std::vector<std::string> units = {"--length-unit", "1m", "--density", "3kg/m3", "--orbit", "8000km"};
+  std::vector<std::string> of_mesh = {"tides", "builtin:box:1,2,3", "--attitude", "y:45"}, of_file = of_mesh;
+  of_file[1] = file;
+  REQUIRE(run_program({"expand", of_mesh[1], "--lmax", "6", "--device", "cpu", "-o", file}).exit_code == 0);
+  of_mesh.insert(of_mesh.end(), units.begin(), units.end());
+  of_file.insert(of_file.end(), units.begin(), units.end());
+  const json a = answer(of_mesh), b = answer(of_file);
+  const double least = 18 * 5 / 12.0, middle = 18 * 10 / 12.0, most = 18 * 13 / 12.0, gradient = 3.986004e14 / 5.12e20;
+  const double n = a["rate_rad_per_s"];
+  CHECK(n == Approx(std::sqrt(gradient)).epsilon(1e-13));
+  CHECK(a["largest_torque"].get<double>() == Approx(1.5 * gradient * (most - least)).epsilon(1e-13));
+  CHECK(std::abs(a["torque_quadrupole"][1].get<double>()) == Approx(1.5 * gradient * (most - least)).epsilon(1e-13));
+  CHECK(a["pitch_period_s"].get<double>() ==
+        Approx(2 * M_PI / n / std::sqrt(3 * (middle - least) / most)).epsilon(1e-13));
+  CHECK(a["capture_half_width_rad_per_s"].get<double>() ==
+        Approx(n * std::sqrt(3 * (middle - least) / most)).epsilon(1e-13));
+  CHECK(a["equilibria"]["rows"].size() == 6);
+  CHECK(a["equilibria"]["rows"][0][3] == "stable (Lagrange)");
+  for (const char* key :
+       {"pitch_period_s", "roll_yaw_slow_period_s", "roll_yaw_fast_period_s", "largest_torque", "mass_kg"})
+    CHECK(b[key].get<double>() == Approx(a[key].get<double>()).epsilon(1e-11));
+}
+
+TEST_CASE("tides of a ball: nothing librates, and the report says so", "[physics][cli]") {
+  const json ball = answer({"tides", "builtin:sphere@3", "--length", "1m", "--density", "1g/cm3", "--orbit", "1R_earth",
+                            "--mass", "6e24kg", "--spin", "1rad/s", "--love", "1", "--quality", "10"});
+  CHECK(ball["librates"] == false);
+  CHECK(ball["pitch_period_s"].is_null());
+  CHECK(ball["capture_half_width_rad_per_s"] == 0);
+  CHECK(ball["locking_time_s"].get<double>() > 0);
+  CHECK(ball.count("equilibria") == 0);
+  CHECK(ball["notes"].dump().find("nothing librates") != std::string::npos);
+}
+
+TEST_CASE("a box that is dropped upside down lands on its feet with the spin that the report names", "[physics][cli]") {
+  const std::vector<std::string> box = {"drop", "builtin:box:1,2,3", "--length-unit", "1m", "--height", "5m"};
+  const auto with = [&](std::initializer_list<std::string> more) {
+    std::vector<std::string> all = box;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const json still = answer(with({"--attitude", "upside-down"}));
+  CHECK(still["lands_on_its_feet"] == false);
+  CHECK(still["feet_tilt_before_deg"] == 180);
+  CHECK(still["touches_with"] == "the end away from the feet");
+  CHECK(still["touch_count"] == 1 + 3); // the whole face
+  CHECK(still["fallen_m"].get<double>() == Approx(4).epsilon(1e-6));
+  const double spin = still["spin_for_half_turn_rad_per_s"];
+  const json turned = answer(with({"--attitude", "upside-down", "--spin", "x," + std::to_string(spin) + "rad/s"}));
+  CHECK(turned["lands_on_its_feet"] == true);
+  CHECK(turned["feet_tilt_after_deg"].get<double>() < 1);
+  CHECK(turned["turn_first_order_rad"].is_null());
+  const json slant = answer(with({"--attitude", "z:45"})), same = answer(with({"--attitude", "45,0,0"}));
+  CHECK(slant["turn_rad"].get<double>() == Approx(same["turn_rad"].get<double>()).epsilon(1e-12));
+  // About z, across the sides 1 and 2: 3/2 GM/r^3 (2^2 - 1^2)/(2^2 + 1^2) t^2/2.
+  const double k = 3.986004e14 / std::pow(6371005.0, 3), t = slant["time_s"];
+  CHECK(slant["turn_rad"].get<double>() == Approx(1.5 * k * 3 / 5 * t * t / 2).epsilon(1e-5));
+  CHECK(slant["turn_first_order_difference"].get<double>() < 1e-5);
+  CHECK(answer(with({"--feet", "x", "--attitude", "upright"}))["feet_tilt_after_deg"].get<double>() < 1e-3);
+}
+
+TEST_CASE("tides and drop name what they cannot use", "[physics][cli]") {
+  const std::vector<std::string> units = {"--length", "2m", "--density", "1g/cm3"};
+  const auto with = [&](std::vector<std::string> all, std::initializer_list<const char*> more) {
+    all.insert(all.end(), units.begin(), units.end());
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const std::vector<std::string> tides = {"tides", "builtin:cow@1"}, drop = {"drop", "builtin:cow@1"};
+  refused(tides, 2, "--orbit");
+  refused(drop, 2, "--height");
+  refused({"tides", "builtin:cow@1", "--orbit", "7000km"}, 2, "--length");
+  refused({"drop", "builtin:cow@1", "--height", "7m"}, 2, "--density");
+  refused(with(tides, {"--orbit", "1m"}), 3, "multipoles");
+  refused(with(tides, {"--orbit", "-7000km"}), 2, "above 0");
+  refused(with(tides, {"--orbit", "7000"}), 2, "unit");
+  refused(with(tides, {"--orbit", "7000kg"}), 2, "R_earth");
+  refused(with(tides, {"--orbit", "1au", "--mass", "0kg"}), 2, "above 0");
+  refused(with(tides, {"--orbit", "1au", "--mass", "-2kg"}), 2, "above 0");
+  refused(with(tides, {"--orbit", "1au", "--mass", "jupiter"}), 2, "earth, moon and sun");
+  refused(with(tides, {"--orbit", "1au", "--attitude", "north"}), 2, "--attitude");
+  refused(with(tides, {"--orbit", "1au", "--love", "1"}), 2, "--quality");
+  refused(with(tides, {"--orbit", "1au", "--order", "1"}), 2, "--order");
+  refused(with(drop, {"--height", "0.1m"}), 2, "touches the ground already");
+  refused(with(drop, {"--height", "-1m"}), 2, "above 0");
+  refused(with(drop, {"--height", "1e300m"}), 2, "lower --height");
+  refused(with(drop, {"--height", "9m", "--spin", "x,1e6rad/s"}), 2, "lower --spin");
+  refused(with(drop, {"--height", "9"}), 2, "unit");
+  refused(with(drop, {"--height", "9m", "--attitude", "sideways"}), 2, "upside-down");
+  refused(with(drop, {"--height", "9m", "--attitude", "x:abc"}), 2, "degrees");
+  refused(with(drop, {"--height", "9m", "--spin", "1rad/s"}), 2, "AXIS,RATE");
+  refused(with(drop, {"--height", "9m", "--feet", "0,0,0"}), 2, "zero length");
+  for (const auto& command :
+       {with(tides, {"--orbit", "1au"}), with(drop, {"--height", "9m"}), with({"radiate", "builtin:cow@1"}, {})}) {
+    std::vector<std::string> hollow = command;
+    hollow.insert(hollow.end(), {"--part", "builtin:cow@1=-1g/cm3"});
+    refused(hollow, 2, "change --density");
   }
 }

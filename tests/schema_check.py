@@ -285,6 +285,29 @@ with tempfile.TemporaryDirectory() as folder:
         assert ("push_tips" in found) is ("--push" in arguments) and ("boundary" in found) is ("--length" in arguments)
     found["orders"][0]["side"] = "up"
     refuses(tip, found, "a side that is none")
+tides, drop = load_schema("tides"), load_schema("drop")
+with tempfile.TemporaryDirectory() as folder:
+    written = os.path.join(folder, "cow.json")
+    expand("builtin:cow@1", "--lmax", "4", "--device", "cpu", "--json", "-o", written)
+    for arguments in (
+        ["builtin:cow@1", "--length", "2m", "--orbit", "7000km", "--attitude", "z:45"],
+        ["builtin:sphere@2", "--length", "2m", "--orbit", "7000km", "--spin", "1rad/s", "--love", "1", "--quality", "9"],
+        [written, "--length-unit", "1m", "--orbit", "1au", "--mass", "sun"],
+    ):
+        found = output_of("tides", *arguments, "--json")
+        jsonschema.validate(found, tides)
+        assert found["librates"] is ("sphere" not in arguments[0]) and ("shifts" in found) is found["librates"]
+        assert ("locking_time_s" in found) is ("--love" in arguments)
+    for arguments in ([], ["--attitude", "on-side", "--spin", "y,1rad/s"], ["--attitude", "1,2,3", "--feet", "x"]):
+        found = output_of("drop", "builtin:cow@1", "--length", "2m", "--height", "5m", *arguments, "--json")
+        jsonschema.validate(found, drop)
+        assert (found["turn_first_order_rad"] is None) is ("--spin" in arguments)
+found["energy_drift"] = 1
+refuses(drop, found, "energy from nowhere")
+errata, found = load_schema("errata"), output_of("errata", "--json")
+jsonschema.validate(found, errata)
+found["errata"][0]["why"] = ""
+refuses(errata, found, "an erratum without a reason")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 inspect = load_schema("inspect")
 with tempfile.TemporaryDirectory() as folder:
@@ -304,4 +327,4 @@ with tempfile.TemporaryDirectory() as folder:
     assert whole["inscribed_radius"] < whole["brillouin_radius"]
     whole["self_intersections"]["listed"] = [{"faces": [1], "kind": "crossing", "place": [0, 0, 0]}]
     refuses(inspect, whole, "a pair of one face")
-print("57 documents and 8 files passed")
+print("64 documents and 8 files passed")

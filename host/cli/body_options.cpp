@@ -2,8 +2,8 @@
 
 #include "host/cli/commands.hpp"
 #include "host/cli/mend_options.hpp"
+#include "host/cli/quantities.hpp"
 #include "host/error.hpp"
-#include "host/spectrum/rotation.hpp"
 #include "host/units.hpp"
 
 #include <fmt/format.h>
@@ -14,18 +14,6 @@
 
 namespace cowgpu::cli {
 namespace {
-
-Eigen::Matrix3d parse_rotation(const std::string& text) {
-  const auto angles = parse_point(text);
-  if (!angles)
-    throw Error(Fault::bad_argument,
-                fmt::format("--rotate {}: it takes three angles ALPHA,BETA,GAMMA in degrees, of the rotation "
-                            "R_z(ALPHA) R_y(BETA) R_z(GAMMA)",
-                            text));
-  // Whole turns are left out exactly, and multiples of 90 degrees stay exact.
-  const Vec3 turns = angles->unaryExpr([](double a) { return std::remainder(a, 360.0); }) / 180 * std::numbers::pi;
-  return rotation_matrix({turns[0], turns[1], turns[2]});
-}
 
 // --length, read before there is a mesh to measure.
 double parse_length(const BodyOptions& options) {
@@ -69,7 +57,7 @@ Placement parse_placement(const BodyOptions& options) {
     placement.metric = true;
   }
   if (!options.axes.empty()) placement.rotation = axes_rotation(options.axes);
-  if (!options.rotate.empty()) placement.rotation = parse_rotation(options.rotate) * placement.rotation;
+  if (!options.rotate.empty()) placement.rotation = parse_rotation("--rotate", options.rotate) * placement.rotation;
   return placement;
 }
 

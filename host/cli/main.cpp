@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   cli::add_distance(app, common);
   cli::add_streamlines(app, common);
   cli::add_physics(app, common);
+  cli::add_errata(app, common);
   cli::add_inspect(app, common);
   cli::add_meshes(app);
   cli::add_devices(app, common);

@@ -32,6 +32,16 @@ constexpr std::array applications = {
                 "          cowgpu tip benchmark --of stretch --order 0..8 --json\n"
                 "          cowgpu tip benchmark --recipe paper",
                 add_tip},
+    Application{
+        "tides", "A body on a circular orbit: gravity-gradient torque, attitudes that last, librations, locking",
+        "Examples: cowgpu tides benchmark --length 2.5m --density 1g/cm3 --orbit 6771km\n"
+        "          cowgpu tides benchmark --length 2.5m --orbit 400000km --mass 6e24kg --attitude z:30\n"
+        "          cowgpu tides cow.json --length-unit 2.4m --orbit 42164km --love 0.1 --quality 10 --spin 1rad/s",
+        add_tides},
+    Application{"drop", "Whether a body that is dropped lands on its feet: its fall, turned by the gradient of gravity",
+                "Examples: cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude upside-down\n"
+                "          cowgpu drop benchmark --length 2.5m --height 10m --attitude on-side --spin x,10rpm",
+                add_drop},
 };
 
 // The paper's body, but for what the user says.
@@ -104,6 +114,26 @@ PhysicsInput load_input(const PhysicsOptions& options) {
   return input;
 }
 
+PhysicsInput load_free_body(const PhysicsOptions& options) {
+  if (is_coefficient_file(options.body.mesh)) return load_input(options);
+  PhysicsOptions own = options;
+  own.body.origin = "mesh"; // without a mass there is no other
+  PhysicsInput input = load_input(own);
+  Body& body = *input.body;
+  if (!body.centre_of_mass.allFinite())
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("{} and its parts weigh {:.3g} together, nothing or nothing but rounding: a free body turns "
+                    "about its centre of mass, and this has none; change --density or the density of a --part",
+                    options.body.mesh, body.mass()));
+  const Placement placement = body.placement;
+  body = make_body(std::move(body.surface), {}, body.density, std::move(body.parts));
+  body.placement = placement;
+  if (options.body.origin != "com")
+    input.notes.push_back("--origin changes nothing: a free body turns about its centre of mass");
+  return input;
+}
+
 PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& options) {
   PlacedTensors placed;
   if (input.body) {
@@ -129,6 +159,26 @@ PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& op
       stated.density / input.coefficients->density.value_or(1) * stated.metres * stated.metres * stated.metres;
   placed.tensors = physics::in_si(placed.tensors, *placed.unit_m, *placed.unit_kg);
   return placed;
+}
+
+PlacedTensors metric_tensors(const PhysicsInput& input, const PhysicsOptions& options) {
+  PlacedTensors placed = placed_tensors(input, options);
+  if (!placed.tensors.metric())
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("no unit was stated for {}: give {} and a --density such as 1g/cm3; without them there are no "
+                    "kilograms, metres and seconds",
+                    options.body.mesh,
+                    input.body ? "--length 2.5m (how long the body is) or --length-unit (what 1 in its file is)"
+                               : "--length-unit (what 1 in the file is)"));
+  return placed;
+}
+
+physics::MassiveBody massive_body(const PhysicsInput& input, const PlacedTensors& placed, int order) {
+  if (!input.body)
+    return physics::massive_body(*input.coefficients, placed.tensors, *placed.unit_m, *placed.unit_kg, order);
+  ConsoleMonitor monitor(ProgressStyle::none);
+  return physics::massive_body(*input.body, order, monitor);
 }
 
 physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options) {

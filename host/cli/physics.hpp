@@ -5,6 +5,7 @@
 #include "host/cli/commands.hpp"
 #include "host/coefficient_set.hpp"
 #include "host/physics/findings.hpp"
+#include "host/physics/point_mass.hpp"
 #include "host/physics/tensors.hpp"
 
 #include <functional>
@@ -38,6 +39,10 @@ void refuse_placing(const BodyOptions& body);
 /// read_coefficient_set() throw.
 PhysicsInput load_input(const PhysicsOptions& options);
 
+/// The same for a body that moves freely, and so turns about its centre of mass: a mesh's origin is that, whatever --origin
+/// says, and a note says so. Throws Error(bad_argument) also where body and parts weigh nothing.
+PhysicsInput load_free_body(const PhysicsOptions& options);
+
 /// An input's tensors, about its origin; in `unit_m` and `unit_kg` what the unit of length of the mesh (or the file), and its
 /// cube times the density, are in SI. Without --length-unit and --length neither is known.
 struct PlacedTensors {
@@ -45,6 +50,12 @@ struct PlacedTensors {
   std::optional<double> unit_m, unit_kg;
 };
 PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& options);
+
+/// Tensors in SI, for what has no meaning without units. Throws Error(bad_argument) that names the options to give.
+PlacedTensors metric_tensors(const PhysicsInput& input, const PhysicsOptions& options);
+
+/// Its body with degrees to `order`, for a point mass outside: of a mesh its own exact moments, else those of the file.
+physics::MassiveBody massive_body(const PhysicsInput& input, const PlacedTensors& placed, int order);
 
 /// Name, hash and notes of an input, for the head of a report.
 physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options);
@@ -64,5 +75,7 @@ struct Application {
 Solve add_tensors(CLI::App& command, Common& common);
 Solve add_radiate(CLI::App& command, Common& common);
 Solve add_tip(CLI::App& command, Common& common);
+Solve add_tides(CLI::App& command, Common& common);
+Solve add_drop(CLI::App& command, Common& common);
 
 } // namespace cowgpu::cli

@@ -1,4 +1,5 @@
 #include "host/cli/physics.hpp"
+#include "host/cli/quantities.hpp"
 
 #include "host/error.hpp"
 #include "host/physics/paper.hpp"
@@ -21,23 +22,6 @@ struct Options {
   std::string axis = "y", omega, period, start = "12Myr", age = "13.787Gyr";
   bool octupole = false;
 };
-
-Vec3 parse_axis(const std::string& text) {
-  for (int c = 0; c < 3; ++c)
-    if (text == std::string(1, char('x' + c))) return Vec3::Unit(c);
-  const auto axis = parse_point(text);
-  if (!axis) throw Error(Fault::bad_argument, fmt::format("--axis {}: it takes x, y, z or three numbers X,Y,Z", text));
-  if (!(axis->norm() > 0))
-    throw Error(Fault::bad_argument, fmt::format("--axis {}: an axis of zero length has no direction", text));
-  return *axis / axis->stableNorm();
-}
-
-Measure parse_quantity(const char* option, const std::string& text, Dimension dimension, const char* example) {
-  const Measure measure = parse_measure(option, text, dimension);
-  if (!measure.has_unit)
-    throw Error(Fault::bad_argument, fmt::format("{} {}: it needs a unit, as in {}", option, text, example));
-  return measure;
-}
 
 double parse_omega(const Options& options, std::vector<std::string>& notes) {
   if (!options.period.empty()) {
@@ -117,7 +101,7 @@ void check_wobble(const Eigen::Matrix3d& inertia, const Vec3& axis, std::vector<
 Radiation radiation(const PhysicsInput& input, const PhysicsOptions& common, const Options& options,
                     std::vector<std::string>& notes) {
   Radiation r;
-  r.axis = parse_axis(options.axis);
+  r.axis = parse_axis("--axis", options.axis);
   r.omega = parse_omega(options, notes);
   r.time = parse_time(options);
   const PlacedTensors placed = placed_tensors(input, common);
@@ -221,13 +205,8 @@ Options paper_options(const Options& options) {
 }
 
 Findings solve(const PhysicsOptions& common, const Options& options) {
-  // A free body turns about its centre of mass, whatever point a mesh's moments are taken about.
-  PhysicsOptions own = common;
-  if (!is_coefficient_file(common.body.mesh)) own.body.origin = "com";
-  const PhysicsInput input = load_input(own);
+  const PhysicsInput input = load_free_body(common);
   Findings found = findings_about(input, common);
-  if (own.body.origin != common.body.origin)
-    found.notes.push_back("--origin changes nothing: a free body turns about its centre of mass");
   const Radiation r = radiation(input, common, options, found.notes);
   const bool si = r.tensors.metric();
   const auto of_spin = [&](auto member) { return r.spin ? Value(double(*r.spin.*member)) : Value(); };

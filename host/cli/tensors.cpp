@@ -44,16 +44,21 @@ std::vector<Comparison> beside_paper(const MassTensors& tensors, const PlacedTen
   return rows;
 }
 
-Findings solve(const PhysicsOptions& options) {
+Findings solve(const PhysicsOptions& options, bool inertia_wanted) {
   const PhysicsInput input = load_input(options);
   const PlacedTensors placed = placed_tensors(input, options);
   const MassTensors& tensors = placed.tensors;
-  const Eigen::Matrix3d inertia = tensors.inertia(); // its error names what is missing
+  const bool complete = tensors.trace.has_value();
+  if (inertia_wanted && !complete) tensors.inertia(); // its error names what is missing
   const PrincipalAxes principal = principal_axes(tensors);
   Findings found = findings_about(input, options);
   const bool si = tensors.metric();
   const std::string length = si ? "m" : std::string(mesh_length_unit), mass = si ? "kg" : std::string(mesh_mass_unit),
                     unit = si ? "kg m^2" : "density * length^5, in the mesh's length unit";
+  if (!complete)
+    found.notes.push_back(
+        "the file does not say the second moment, which no multipole holds: no inertia without it; the JSON "
+        "of `cowgpu expand` holds it, and what `cowgpu convert` makes of that");
   if (!si)
     found.notes.push_back("lengths and densities are in the mesh's units; --length-unit or --length make them SI");
   if (principal.first_two_alike && principal.last_two_alike)
@@ -63,24 +68,29 @@ Findings solve(const PhysicsOptions& options) {
                                       principal.first_two_alike ? "first" : "last"));
   found.notes.push_back("principal axes by growing moment; the largest component of the first two is positive, and "
                         "the third is the first cross the second");
-  found.rows = {{"origin", "origin", tensors.origin ? Value(*tensors.origin) : Value(), length},
-                {"origin_kind", "which is", tensors.origin_kind},
-                {"mass", "mass", tensors.mass, mass},
-                {"first_moment", "first moment", tensors.first_moment, si ? "kg m" : "density * length^4"},
-                {"quadrupole", "quadrupole, integral of density (3 x_i x_j - r^2 delta_ij)", tensors.quadrupole, unit},
-                {"inertia", "inertia, integral of density (r^2 delta_ij - x_i x_j)", inertia, unit},
-                {"second_moment", "second moment, integral of density x_i x_j", tensors.second_moment(), unit},
-                {"principal_moments", "principal moments of inertia", *principal.moments, unit},
-                {"principal_quadrupole", "quadrupole along these axes", principal.quadrupole, unit},
-                {"principal_axes", "principal axes, one a row", Eigen::Matrix3d(principal.axes.transpose())}};
+  found.rows = {
+      {"origin", "origin", tensors.origin ? Value(*tensors.origin) : Value(), length},
+      {"origin_kind", "which is", tensors.origin_kind},
+      {"mass", "mass", tensors.mass, mass},
+      {"first_moment", "first moment", tensors.first_moment, si ? "kg m" : "density * length^4"},
+      {"quadrupole", "quadrupole, integral of density (3 x_i x_j - r^2 delta_ij)", tensors.quadrupole, unit},
+      {"inertia", "inertia, integral of density (r^2 delta_ij - x_i x_j)",
+       complete ? Value(tensors.inertia()) : Value(), unit},
+      {"second_moment", "second moment, integral of density x_i x_j",
+       complete ? Value(tensors.second_moment()) : Value(), unit},
+      {"principal_moments", "principal moments of inertia", complete ? Value(*principal.moments) : Value(), unit},
+      {"principal_quadrupole", "quadrupole along these axes", principal.quadrupole, unit},
+      {"principal_axes", "principal axes, one a row", Eigen::Matrix3d(principal.axes.transpose())}};
   if (options.paper()) found.paper = beside_paper(tensors, placed);
   return found;
 }
 
 } // namespace
 
-Solve add_tensors(CLI::App&, Common&) {
-  return solve;
+Solve add_tensors(CLI::App& command, Common&) {
+  const auto inertia = std::make_shared<bool>(false);
+  command.add_flag("--inertia", *inertia, "The inertia is what is wanted: refuse a file that does not give it");
+  return [inertia](const PhysicsOptions& options) { return solve(options, *inertia); };
 }
 
 } // namespace cowgpu::cli

@@ -6,6 +6,7 @@
 #include "host/cpu/moments.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/cpu/peak.hpp"
+#include "host/cpu/potential.hpp"
 #include "host/cpu/render.hpp"
 #include "host/cpu/sample.hpp"
 #include "host/cpu/sphere_transform.hpp"
@@ -70,6 +71,12 @@ public:
   }
   MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const override {
     return {cpu::distance_flow_bytes(vertices, faces, starts), 0};
+  }
+  PotentialField potential(const PotentialProblem& problem, Monitor& monitor, RunReport* report) override {
+    return cpu::potential(problem, threads_, monitor, report);
+  }
+  MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives) const override {
+    return {cpu::potential_bytes(points, lmax, derivatives), 0};
   }
   Image render(const RenderScene& scene, Monitor& monitor) override { return cpu::render(scene, threads_, monitor); }
   double measured_peak() override { return cpu::peak(threads_); }

@@ -9,6 +9,7 @@
 #include "host/gpu/errors.hpp"
 #include "host/gpu/flow.hpp"
 #include "host/gpu/moments.hpp"
+#include "host/gpu/potential.hpp"
 #include "host/gpu/sample.hpp"
 #include "host/gpu/sphere_transform.hpp"
 
@@ -79,6 +80,14 @@ public:
 
   MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const override {
     return gpu::distance_flow_memory(vertices, faces, starts);
+  }
+
+  PotentialField potential(const PotentialProblem& problem, Monitor& monitor, RunReport* report) override {
+    return gpu::translated([&] { return gpu::potential(*gpu_, iteration_budget_, problem, monitor, report); });
+  }
+
+  MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives) const override {
+    return gpu::potential_memory(points, lmax, derivatives);
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {

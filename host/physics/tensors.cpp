@@ -64,12 +64,16 @@ MassTensors mass_tensors(const Body& body) {
   return result;
 }
 
-MassTensors mass_tensors(const CoefficientSet& set) {
+void check_mass_multipoles(const CoefficientSet& set) {
   if (set.kind == CoefficientKind::field || set.fields != 1)
     throw Error(
         Fault::file_format,
         "these are coefficients of a surface or of another field, and this asks for those of a mass: multipoles "
         "or a potential, as `cowgpu expand --of mass` and `cowgpu convert --kind multipoles` write them");
+}
+
+MassTensors mass_tensors(const CoefficientSet& set) {
+  check_mass_multipoles(set);
   if (set.lmax < 2)
     throw Error(Fault::file_format,
                 fmt::format("these coefficients end at degree {}, and the quadrupole is degree 2", set.lmax));

@@ -35,6 +35,9 @@ struct MassTensors {
 /// Of a mesh with its parts, about the body's origin (host/mesh/tensors.hpp).
 MassTensors mass_tensors(const Body& body);
 
+/// Throws Error(file_format) for coefficients of a surface or of another field that is no mass.
+void check_mass_multipoles(const CoefficientSet& set);
+
 /// Of mass multipoles or a potential, to degree 2, in any convention: with Y_lm as in SphereCoefficients
 ///   Q_20 = sqrt(5/16pi) Q_zz,  Q_21 = -sqrt(5/24pi) (Q_xz + i Q_yz),  Q_22 = sqrt(5/96pi) (Q_xx - Q_yy + 2i Q_xy).
 /// Throws Error(file_format) for coefficients of a surface and for degrees that end before 2; what converted() throws.

@@ -1,0 +1,98 @@
+#include "host/cli/quantities.hpp"
+
+#include "host/cli/commands.hpp"
+#include "host/error.hpp"
+#include "host/spectrum/rotation.hpp"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace cowgpu::cli {
+
+using physics::LongMat3;
+using physics::LongVec3;
+
+Vec3 parse_axis(const std::string& option, const std::string& text) {
+  for (int c = 0; c < 3; ++c)
+    for (const double sign : {1, -1})
+      if (text == (sign > 0 ? "" : "-") + std::string(1, char('x' + c))) return sign * Vec3::Unit(c);
+  const auto axis = parse_point(text);
+  if (!axis)
+    throw Error(Fault::bad_argument, fmt::format("{} {}: it takes x, y, z or three numbers X,Y,Z", option, text));
+  if (!(axis->stableNorm() > 0))
+    throw Error(Fault::bad_argument, fmt::format("{} {}: an axis of zero length has no direction", option, text));
+  return *axis / axis->stableNorm();
+}
+
+Measure parse_quantity(const std::string& option, const std::string& text, Dimension dimension, const char* example) {
+  const Measure measure = parse_measure(option, text, dimension);
+  if (!measure.has_unit)
+    throw Error(Fault::bad_argument, fmt::format("{} {}: it needs a unit, as in {}", option, text, example));
+  return measure;
+}
+
+double parse_positive(const std::string& option, const std::string& text, Dimension dimension, const char* example) {
+  const double value = parse_quantity(option, text, dimension, example).value;
+  if (!(value > 0)) throw Error(Fault::bad_argument, fmt::format("{} {}: it must be above 0", option, text));
+  return value;
+}
+
+Eigen::Matrix3d parse_rotation(const std::string& option, const std::string& text) {
+  const auto angles = parse_point(text);
+  if (!angles)
+    throw Error(Fault::bad_argument,
+                fmt::format("{} {}: it takes three angles ALPHA,BETA,GAMMA in degrees, of the rotation "
+                            "R_z(ALPHA) R_y(BETA) R_z(GAMMA)",
+                            option, text));
+  // Whole turns are left out exactly, and multiples of 90 degrees stay exact.
+  const Vec3 turns = angles->unaryExpr([](double a) { return std::remainder(a, 360.0); }) / 180 * std::numbers::pi;
+  return rotation_matrix({turns[0], turns[1], turns[2]});
+}
+
+LongMat3 turn_about(const Vec3& axis, double degrees) {
+  const double turn = std::remainder(degrees, 360.0), rest = std::remainder(turn, 90.0);
+  const auto quarters = int(std::lround((turn - rest) / 90));
+  constexpr int sines[] = {0, 1, 0, -1};
+  const long double angle = rest / 180 * std::numbers::pi_v<long double>;
+  const long double s0 = sines[(quarters + 4) % 4], c0 = sines[(quarters + 5) % 4];
+  const long double s = s0 * std::cos(angle) + c0 * std::sin(angle), c = c0 * std::cos(angle) - s0 * std::sin(angle);
+  const LongVec3 a = axis.cast<long double>() / axis.cast<long double>().norm();
+  LongMat3 cross;
+  cross << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return LongMat3::Identity() + s * cross + (1 - c) * cross * cross;
+}
+
+LongMat3 parse_turn(const std::string& option, const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) {
+    const LongMat3 r = parse_rotation(option, text).cast<long double>();
+    return r * (3 * LongMat3::Identity() - r.transpose() * r) / 2; // Newton's step to the orthogonal matrix next to it
+  }
+  const Vec3 axis = parse_axis(option, text.substr(0, colon));
+  std::string number = text.substr(colon + 1);
+  if (number.ends_with("deg")) number.resize(number.size() - 3);
+  double degrees = 0;
+  const char* const end = number.data() + number.size();
+  const auto [next, error] = std::from_chars(number.data(), end, degrees);
+  if (error != std::errc() || next != end || !std::isfinite(degrees))
+    throw Error(Fault::bad_argument,
+                fmt::format("{} {}: after the axis it takes an angle in degrees, as in x:30", option, text));
+  return turn_about(axis, degrees);
+}
+
+physics::PointMass parse_point_mass(const std::string& option, const std::string& text) {
+  for (const physics::PointMass* known : {&physics::earth, &physics::moon, &physics::sun})
+    if (text == known->name) return *known;
+  try {
+    const double mass = parse_positive(option, text, Dimension::mass, "5.97e24kg");
+    return {"", mass * gravitational_constant_si, 0};
+  } catch (const Error& error) {
+    throw Error(error.fault(), fmt::format("{}; earth, moon and sun are known by name", error.what()));
+  }
+}
+
+} // namespace cowgpu::cli

@@ -1,0 +1,35 @@
+// Words of the command line that stand for quantities: axes, rotations, numbers with units, masses in the sky.
+#pragma once
+
+#include "host/physics/point_mass.hpp"
+#include "host/types.hpp"
+#include "host/units.hpp"
+
+#include <Eigen/Core>
+
+#include <string>
+
+namespace cowgpu::cli {
+
+/// "x", "y", "z", these with a minus sign, or "X,Y,Z": of length 1. Throws Error(bad_argument).
+Vec3 parse_axis(const std::string& option, const std::string& text);
+
+/// A measure that must have a unit; `example` shows one. Throws Error(bad_argument).
+Measure parse_quantity(const std::string& option, const std::string& text, Dimension dimension, const char* example);
+
+/// The same where it must also be above 0.
+double parse_positive(const std::string& option, const std::string& text, Dimension dimension, const char* example);
+
+/// "ALPHA,BETA,GAMMA" in degrees as R_z(ALPHA) R_y(BETA) R_z(GAMMA); multiples of 90 are exact. Throws Error(bad_argument).
+Eigen::Matrix3d parse_rotation(const std::string& option, const std::string& text);
+
+/// The same, or "AXIS:ANGLE" with parse_axis() and degrees, orthogonal in extended precision.
+physics::LongMat3 parse_turn(const std::string& option, const std::string& text);
+
+/// Rotation by an angle in degrees about an axis of length 1; multiples of 90 about x, y and z are exact.
+physics::LongMat3 turn_about(const Vec3& axis, double degrees);
+
+/// "earth", "moon", "sun", or a mass with its unit. Throws Error(bad_argument).
+physics::PointMass parse_point_mass(const std::string& option, const std::string& text);
+
+} // namespace cowgpu::cli

@@ -1,0 +1,110 @@
+#include "host/physics/errata.hpp"
+
+#include "host/mesh/geometry.hpp"
+#include "host/physics/paper.hpp"
+#include "host/physics/radiate.hpp"
+#include "host/physics/tensors.hpp"
+#include "host/reference/potential.hpp"
+#include "host/spectrum/paper_tables.hpp"
+#include "host/sphere_grid.hpp"
+#include "host/units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cowgpu::physics {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Eigen::Matrix3d paper_quadrupole() {
+  const auto& t = paper::quadrupole;
+  Eigen::Matrix3d q;
+  q << t[0], t[1], t[2], t[1], t[3], t[4], t[2], t[4], t[5];
+  return q;
+}
+
+constexpr double length = paper::length_unit_m, mass = paper::mass_unit_kg;
+constexpr double unit = mass * length * length;
+
+// 1 - omega/omega_0 about y at 1 rad/s after the paper's time, without its rounding.
+double deficit(const Eigen::Matrix3d& quadrupole, double moment) {
+  const double square = quadrupole_square(quadrupole, Vec3::UnitY()) * unit * unit;
+  const double time = (13.787e9 - 12e6) * julian_year;
+  return double(spin_down(moment * unit, quadrupole_power(square, 1), 1, time).deficit);
+}
+
+// sum |Q'''_2m|^2 over Q'''_ij Q'''_ij, of a turning tensor: the factor of the spherical formula is 1/45 over this.
+double spherical_factor(const Eigen::Matrix3d& tensor) {
+  // The printed digits leave a trace of 1e-8.
+  const Eigen::Matrix3d q = tensor - tensor.trace() / 3 * Eigen::Matrix3d::Identity();
+  double sum = 0;
+  const auto spherical = spherical_quadrupole(q);
+  for (int m = -2; m <= 2; ++m) sum += std::norm(spherical[std::size_t(std::abs(m))]);
+  return q.squaredNorm() / (45 * sum);
+}
+
+// Integral of |Y_22|^2 over the sphere: Y_22 is what a moment Q_22 alone makes of the potential at r = 1.
+double norm_of_y22() {
+  Coefficients only;
+  only.lmax = 2;
+  only.values.resize(Coefficients::count(2));
+  only.values[Coefficients::index(2, 2)] = 1;
+  const reference::ExteriorPotential<double> real_part(only);
+  const SphereGrid grid = make_grid(GridKind::gauss_legendre, 8);
+  double sum = 0;
+  for (int i = 0; i < grid.rings; ++i)
+    for (int j = 0; j < grid.ring_length; ++j) {
+      const double theta = grid.theta[std::size_t(i)], phi = grid.phi(j);
+      const Vec3 n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+      const double twice_re = real_part(n).value * 5 / (4 * pi);
+      sum += twice_re * twice_re * grid.weights[std::size_t(i)] * 2 * pi / grid.ring_length;
+    }
+  return sum / 2; // of (Y + conj Y)^2
+}
+
+// The lowest corner on the right, about which the cow is tipped.
+Vec3 pivot(const Body& body) {
+  const Vec3 centre = body.centre_of_mass;
+  Vec3 lowest = Vec3::Constant(std::numeric_limits<double>::infinity());
+  for (const Vec3& p : body.surface.vertices())
+    if (p.z() > centre.z() && p.y() < lowest.y()) lowest = p;
+  return lowest - centre;
+}
+
+} // namespace
+
+std::vector<ErratumNumber> errata_numbers() {
+  const double square = quadrupole_square(paper_quadrupole(), Vec3::UnitY()) * unit * unit;
+  Coefficients monopole;
+  monopole.values = {1 / std::sqrt(4 * pi)};
+  const double far = reference::ExteriorPotential<double>(monopole)(Vec3(3, 4, 12)).value * 13;
+  int degree = 0;
+  for (const PaperRow& row : paper_harmonic_table()) degree = std::max(degree, row.l);
+  const double printed_time = (13.787e9 - 12e6) * 365 * 86400;
+  return {
+      {1, "square of the paper's tensor in kg^2 m^4", square, paper::square_si},
+      {1, "power of it in erg/s", double(quadrupole_power(square, 1)) * 1e7, paper::power_erg_per_s},
+      {2, "factor of G/c^5 sum |Q'''_2m|^2", spherical_factor(paper_quadrupole()), 3 / (8 * pi)},
+      {3, "r V/M of a point mass", far, far * std::sqrt(1 / (4 * pi))},
+      {4, "integral of |Y_22|^2", norm_of_y22(), norm_of_y22() * 120 / 5},
+      {7, "deficit with the paper's tensors", deficit(paper_quadrupole(), paper::inertia[3]), paper::deficit},
+      {7, "deficit with the paper's rounding", printed_time / (2 * paper::timescale_s), paper::deficit},
+      {10, "highest degree of the harmonic table", double(degree), 2},
+      {18, "unit of length in m", paper::length / paper::box_length, paper::length_unit_m},
+      {18, "power at fixed density, over the paper's", std::pow(paper::length / paper::box_length / length, 10), 1}};
+}
+
+std::vector<ErratumNumber> errata_numbers(const Body& benchmark) {
+  const MassTensors tensors = about_centre(mass_tensors(benchmark));
+  const Vec3 p = pivot(benchmark);
+  return {{5, "Im Q_22", spherical_quadrupole(tensors.quadrupole)[2].imag(), paper::q22_im},
+          {7, "deficit with exact tensors", deficit(tensors.quadrupole, tensors.inertia()(1, 1)), paper::deficit},
+          {11, "lever of the lowest hoof about x", p.z(), std::hypot(p.x(), p.z())},
+          {14, "volume", benchmark.volume, paper::volume},
+          {14, "mass in kg", benchmark.volume * mass, paper::mass_kg},
+          {14, "Q_00", tensors.mass / std::sqrt(4 * pi), paper::q00}};
+}
+
+} // namespace cowgpu::physics
