@@ -35,3 +35,33 @@ TEST_CASE("a table of findings stands in aligned columns on the screen", "[physi
                 "      0          0   yes\n"
                 "   full    1234.57     -\n");
 }
+
+TEST_CASE("a table of entries is a list of objects, with columns that the screen leaves out", "[physics]") {
+  Findings found = with_table();
+  found.tables[0].as_entries = true;
+  found.tables[0].columns[2].on_screen = false;
+  const auto document = nlohmann::json(findings_json(found, "cowgpu.tip.v1", {"cowgpu", "tip"}));
+  CHECK(document["orders"] == nlohmann::json::parse(R"([{"order": 0, "force": 0, "held": true},
+                                                        {"order": "full", "force": 1234.56789, "held": null}])"));
+  CHECK(document["units"]["orders.force"] == "N");
+  std::string text;
+  write_findings(found, [&](std::string_view part) { text += part; });
+  CHECK(text == "a body\n"
+                "\nforce by order\n"
+                "  order  force [N]\n"
+                "      0          0\n"
+                "   full    1234.57\n");
+}
+
+TEST_CASE("remarks in a table's last column begin at one place", "[physics]") {
+  Findings found = with_table();
+  found.tables[0].rows[0][2] = std::string("a remark that is long");
+  found.tables[0].rows[1][2] = std::string("none");
+  std::string text;
+  write_findings(found, [&](std::string_view part) { text += part; });
+  CHECK(text == "a body\n"
+                "\nforce by order\n"
+                "  order  force [N]  held\n"
+                "      0          0  a remark that is long\n"
+                "   full    1234.57  none\n");
+}

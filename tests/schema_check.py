@@ -267,6 +267,24 @@ with tempfile.TemporaryDirectory() as folder:
         assert ("octupole_power_W" in found) is ("--octupole" in arguments)
 found["omega_after"] = "1e0"
 refuses(radiate, found, "an exponent among all digits")
+tip = load_schema("tip")
+with tempfile.TemporaryDirectory() as folder:
+    surface, push = os.path.join(folder, "cow.json"), os.path.join(folder, "push.csv")
+    expand("builtin:cow@1", "--of", "smooth", "--lmax", "5", "--device", "cpu", "--json", "-o", surface)
+    with open(push, "w", encoding="utf-8") as file:
+        file.write("time,force\n0,0\n0.1,5000\n0.2,0\n")
+    for arguments in (
+        ["builtin:box:1,2,1"],
+        ["builtin:cow@1", "--length", "2.5m", "--density", "1g/cm3", "--friction", "0.6", "--push", push, "--punch-duration", "20ms"],
+        ["builtin:cow@1", "--length", "2.5m", "--order", "0..2,full", "--of", "smooth", "--as-modelled", "--contact-tolerance", "1cm"],
+        [surface, "--order", "0,3", "--fields", "f"],
+    ):
+        found = output_of("tip", *arguments, "--device", "cpu", "--json")
+        jsonschema.validate(found, tip)
+        assert found["orders"][-1]["order"] == "full" and found["orders"][-1]["force_N"] == found["force_N"]
+        assert ("push_tips" in found) is ("--push" in arguments) and ("boundary" in found) is ("--length" in arguments)
+    found["orders"][0]["side"] = "up"
+    refuses(tip, found, "a side that is none")
 tides, drop = load_schema("tides"), load_schema("drop")
 with tempfile.TemporaryDirectory() as folder:
     written = os.path.join(folder, "cow.json")

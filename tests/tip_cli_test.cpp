@@ -70,6 +70,7 @@ TEST_CASE("tip of a box in newtons, and in its weight where no unit is stated", 
   const json plain = answer({"builtin:box:1,2,0.8", "--side", "left"});
   CHECK(plain["force_N"].is_null());
   CHECK(plain["force_over_weight"].get<double>() == Approx(0.2 / r).epsilon(1e-13));
+  CHECK(plain["force_over_weight_paper_balance"].get<double>() == Approx(0.4 / (r + 0.16 / r)).epsilon(1e-13));
   CHECK(plain["side"] == "left");
   CHECK_FALSE(plain.contains("boundary"));
   CHECK_THAT(plain["notes"].dump(), Contains("units of the body's weight"));
@@ -126,6 +127,19 @@ TEST_CASE("a push that lasts: pulse and table, body and space, and the boundary 
   CHECK(never_tips == 2); // 50 N and the threshold itself
 }
 
+TEST_CASE("the boundary is drawn where there is one", "[tip][cli]") {
+  const TemporaryFolder folder;
+  const std::string picture = folder / "boundary.svg";
+  const ProgramRun run = run_program(with(with({"tip"}, crate), {"--plot", picture, "--punch-duration", "20ms"}));
+  CHECK(run.exit_code == 0);
+  std::ifstream file(picture);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  CHECK_THAT(text, Contains("<svg"));
+  refused(with(crate, {"--plot", folder / "boundary.gif"}), 2, "boundary.gif");
+  refused({"builtin:box", "--plot", picture}, 2, "--length");
+  refused(with(crate, {"--plot", folder / "nowhere/boundary.png"}), 5, "nowhere");
+}
+
 TEST_CASE("tip at orders of the expansion: the ball needs nothing, high orders what the body does", "[tip][cli]") {
   const json found = answer({"builtin:cow@2", "--length", "2.5m", "--density", "1g/cm3", "--order", "0,1,20,full"});
   const json& orders = found["orders"];
@@ -139,6 +153,31 @@ TEST_CASE("tip at orders of the expansion: the ball needs nothing, high orders w
   for (const json& entry : orders)
     for (const char* key : {"pivot", "point", "direction"}) CHECK(entry[key].size() == 3);
   CHECK(orders[2]["force_N"].get<double>() == Approx(orders[3]["force_N"].get<double>()).epsilon(0.25));
+}
+
+TEST_CASE("a ball as a smooth body is tipped by nothing; as a polyhedron it stands on a facet, and the note says so",
+          "[tip][cli]") {
+  const std::vector<std::string> ball = {"builtin:sphere:0.5@5", "--length-unit", "1m"};
+  const json smooth = answer(with(ball, {"--smooth"}));
+  CHECK(smooth["force_N"] == 0);
+  CHECK(smooth["friction_needed"] == 0);
+  CHECK_FALSE(smooth.contains("boundary"));
+  CHECK_THAT(smooth["notes"].dump(), Contains("rolls over") && Contains("any push tips it"));
+  const json facets = answer(ball);
+  CHECK(facets["force_N"].get<double>() > 0);
+  CHECK_THAT(facets["notes"].dump(), Contains("--smooth"));
+  CHECK_THAT(answer(crate)["notes"].dump(), !Contains("--smooth"));
+  CHECK(answer({"builtin:sphere:0.5@5", "--as-modelled"})["force_over_weight"] == 0);
+}
+
+TEST_CASE("an order that cannot stand as modelled has no force, and the row says why", "[tip][cli]") {
+  const json found = answer({"builtin:cow@2", "--as-modelled", "--order", "0,3"});
+  CHECK(found["orders"][0]["force_over_weight"] == 0);
+  const json& third = found["orders"][1];
+  for (const char* key : {"pivot", "point", "side", "force_N", "force_over_weight", "force_N_paper_balance"})
+    CHECK(third[key].is_null());
+  CHECK_THAT(third["note"].get<std::string>(), Contains("cannot stand") && Contains("falls to the"));
+  CHECK(found["orders"][2]["force_over_weight"].get<double>() > 0.1);
 }
 
 TEST_CASE("tip from files of surface coefficients is that of the mesh's orders", "[tip][cli]") {

@@ -38,6 +38,8 @@ TEST_CASE("times, rates and masses have units too, and say which one it was", "[
   CHECK(rate("180deg/s").value == Approx(rate("30rpm").value).epsilon(1e-15));
   CHECK(parse_measure("--x", "2t", Dimension::mass).value == 2000);
   CHECK(parse_measure("--x", "2 nC/m3", Dimension::charge_density).value == 2e-9);
+  CHECK(parse_measure("--x", "5kN", Dimension::force).value == 5000);
+  CHECK(parse_measure("--x", "1lbf", Dimension::force).value == Approx(4.4482216152605).epsilon(1e-14));
   CHECK_THROWS_WITH(parse_measure("--x", "1 Myr", Dimension::mass), Contains("no unit is called Myr"));
 }
 

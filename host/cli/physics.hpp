@@ -88,5 +88,8 @@ Solve add_radiate(CLI::App& command, Common& common);
 Solve add_tides(CLI::App& command, Common& common);
 Solve add_drop(CLI::App& command, Common& common);
 Solve add_tip(CLI::App& command, Common& common);
+Solve add_tip(CLI::App& command, Common& common);
+Solve add_tides(CLI::App& command, Common& common);
+Solve add_drop(CLI::App& command, Common& common);
 
 } // namespace cowgpu::cli

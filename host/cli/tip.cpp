@@ -3,12 +3,14 @@
 #include "host/cli/tip_push.hpp"
 
 #include "host/error.hpp"
+#include "host/io/mesh_source.hpp"
 #include "host/physics/paper.hpp"
 #include "host/spectrum/expand_surface.hpp"
 #include "host/units.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -27,7 +29,8 @@ struct Options {
   std::string tolerance;
   double gravity = standard_gravity;
   double friction = -1; // below 0: not given
-  std::string plot;     // a picture of the boundary, or empty
+  bool smooth = false;
+  std::string plot; // a picture of the boundary, or empty
 };
 
 // A body on the ground and what tips it to either side.
@@ -82,6 +85,7 @@ std::vector<Value> order_row(const Value& order, const Stood& s, double gravity,
           weight.of(t.force),
           t.force,
           weight.of(t.force_paper_balance),
+          t.force_paper_balance,
           weight.of(s.left.force),
           weight.of(s.right.force),
           t.friction_needed,
@@ -112,6 +116,7 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
                {"force_N", "N"},
                {"force_over_weight"},
                {"force_N_paper_balance", "N"},
+               {"force_over_weight_paper_balance", "", false},
                {"force_left_N", "N", false},
                {"force_right_N", "N", false},
                {"friction_needed"},
@@ -137,7 +142,8 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
         throw;
       std::vector<Value> row(table.columns.size());
       row.front() = double(order);
-      row.back() = std::string(error.what());
+      const std::string reason = error.what();
+      row.back() = reason.substr(0, reason.find(';')); // without the advice
       table.rows.push_back(std::move(row));
     }
   }
@@ -173,6 +179,7 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
       {"direction", "pushed towards", t.direction},
       {"force_N", "force to begin, about the pivot", weight.of(t.force), "N"},
       {"force_over_weight", "the same over the weight", t.force},
+      {"force_over_weight_paper_balance", "the paper's balance over the weight", t.force_paper_balance},
       {"force_N_paper_balance", "about the barycentre, as the paper has it", weight.of(t.force_paper_balance), "N"},
       {"force_N_paper_literal", "the same with its arm in space", weight.of(t.force_paper_literal), "N"},
       {"force_left_N", "force to begin, to the left", weight.of(stood.left.force), "N"},
@@ -185,6 +192,13 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
   found.rows.push_back({"slip_force_N", "force that makes it slip", weight.of(slip), "N"});
   found.rows.push_back({"slip_force_over_weight", "the same over the weight", slip});
   found.rows.push_back({"slips_before_tipping", "slips before it tips", options.friction < t.friction_needed});
+}
+
+// Whether the patch is less than a twentieth of the barycentre's height across.
+bool narrow(const Stance& stance) {
+  double across = 0;
+  for (const Vec3& p : stance.contact.patch) across = std::max(across, (p - stance.contact.patch.front()).norm());
+  return across < 0.05 * (stance.body.barycentre.y() - stance.contact.ground);
 }
 
 void add_notes(const Stood& stood, const TipInput& input, const Options& options, Findings& found) {
@@ -206,6 +220,13 @@ void add_notes(const Stood& stood, const TipInput& input, const Options& options
     found.notes.push_back(
         "the barycentre is not over the contact patch: unless it is held it falls fore or aft first; only "
         "torque about x counts here");
+  if (stood.chosen().rolls)
+    found.notes.push_back(
+        "the body is smooth and touches the ground right under its barycentre: it rolls over that point");
+  if (!stance.body.smooth && narrow(stance))
+    found.notes.push_back(
+        "the contact patch is no wider than a few triangles: if they stand for a smooth surface, --smooth "
+        "lets it roll over the point where it touches");
   if (!input.orders.empty())
     found.notes.push_back("orders have the mass of the whole; where their surface crosses itself, regions count by how "
                           "often it winds round them; an order that cannot stand has no force");
@@ -230,6 +251,7 @@ std::vector<Comparison> beside_paper(const TipInput& input, const Options& optio
   add("settled, N", t.force * weight);
   add("settled, its balance, N", t.force_paper_balance * weight);
   if (t.force_paper_literal) add("settled, its arm in space, N", *t.force_paper_literal * weight);
+  if (input.head.input_sha256 != benchmark_sha256) return rows;
   for (const auto& [what, tolerance] :
        {std::pair("hind hooves' tips", 0.0), std::pair("hind hooves", 0.005), std::pair("all hooves", 0.01)}) {
     const Stood modelled = stand_up(input.full, {true, tolerance * input.unit}, "weaker");
@@ -245,13 +267,14 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
     for (const std::string& file : input_files(common.body)) refuse_same_file(file, options.plot);
   }
   TipInput input = load_tip_input(common, options.choice, program);
-  if (!input.metric && (plan.profile || plan.punch_duration))
+  if (!input.metric && (plan.profile || plan.punch_duration || !options.plot.empty()))
     throw Error(Fault::bad_argument,
-                "--push and --punch-duration are about newtons and seconds: add --length, how long "
+                "--push, --punch-duration and --plot are about newtons and seconds: add --length, how long "
                 "the body is, or --length-unit, and its --density");
   const StandOptions how = stand_options(options, input);
+  input.full.smooth = input.full.smooth || options.smooth;
   const Stood stood = stand_up(input.full, how, options.side);
-  Findings found = std::move(input.head);
+  Findings found = input.head;
   ConsoleMonitor monitor(program.style());
   add_notes(stood, input, options, found);
   add_force_rows(stood, input, options, found);
@@ -310,6 +333,10 @@ Solve add_tip(CLI::App& command, Common& common) {
   command.add_option("--side", options->side, "The side it falls to: left, right (z), or the weaker")
       ->check(CLI::IsMember({"weaker", "left", "right"}))
       ->capture_default_str();
+  command.add_flag(
+      "--smooth", options->smooth,
+      "The mesh stands for a smooth surface, as orders do: where it touches at one point it rolls, and no facet "
+      "holds it");
   command.add_flag("--as-modelled", options->as_modelled,
                    "Do not let it settle on a facet of its hull: the ground is the plane of least y");
   command

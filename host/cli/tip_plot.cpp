@@ -24,19 +24,20 @@ void write_tip_plot(const physics::Rocker& rocker, const PushOptions& options, c
   plot::Series blow{.name = fmt::format("smallest impulse, {:.4g} N s", rocker.least_impulse()), .x = {}, .y = {}};
   blow.dash = plot::Dash::dotted;
   const double last = 3 * std::max(10 * threshold, plan.punch);
-  for (double over = 1e-4; (1 + over) * threshold < last; over *= 1.08) {
-    const double force = (1 + over) * threshold;
-    boundary.x.push_back(force);
+  for (double over = 1e-4; (1 + over) * threshold < last; over *= 1.08) boundary.x.push_back((1 + over) * threshold);
+  boundary.x.push_back(last);
+  for (const double force : boundary.x) {
     boundary.y.push_back(rocker.least_duration(force));
-    blow.x.push_back(force);
     blow.y.push_back(rocker.least_impulse() / force);
   }
+  blow.x = boundary.x;
   plot::Region tips{.name = "tips over", .x = boundary.x, .low = boundary.y, .high = {}};
   tips.high.assign(boundary.x.size(), std::numeric_limits<double>::infinity());
   picture.regions = {tips};
   picture.series = {boundary, blow};
   picture.lines = {{true, threshold, fmt::format("threshold, {:.4g} N", threshold)},
                    {true, plan.sustained, options.sustained + " sustained"}};
+  picture.x.high = last;
   picture.x.low = 0.7 * std::min(threshold, plan.sustained);
   const double least = rocker.least_duration(plan.punch);
   if (std::isfinite(least))

@@ -1,6 +1,7 @@
 #include "host/cli/tip_push.hpp"
 
 #include "host/cli/commands.hpp"
+#include "host/cli/quantities.hpp"
 #include "host/error.hpp"
 #include "host/io/csv_table.hpp"
 #include "host/units.hpp"
@@ -17,14 +18,6 @@ namespace {
 using namespace physics;
 
 constexpr double degrees = 180 / std::numbers::pi;
-
-double parse_quantity(const char* option, const std::string& text, Dimension dimension, const char* example) {
-  const Measure measure = parse_measure(option, text, dimension);
-  if (!measure.has_unit)
-    throw Error(Fault::bad_argument, fmt::format("{} {}: it needs a unit, as in {}", option, text, example));
-  if (!(measure.value > 0)) throw Error(Fault::bad_argument, fmt::format("{} {}: it must be above 0", option, text));
-  return measure.value;
-}
 
 Profile read_profile(const std::string& file) {
   const CsvTable table = read_csv(file);
@@ -54,8 +47,8 @@ Profile parse_push(const std::string& text) {
     throw Error(Fault::bad_argument, fmt::format("--push {}: it takes FORCE:DURATION, such as 5000N:0.1s, or FILE.csv "
                                                  "with the columns time,force in seconds and newtons",
                                                  text));
-  return square_pulse(parse_quantity("--push", text.substr(0, colon), Dimension::force, "5000N:0.1s"),
-                      parse_quantity("--push", text.substr(colon + 1), Dimension::time, "5000N:0.1s"));
+  return square_pulse(parse_positive("--push", text.substr(0, colon), Dimension::force, "5000N:0.1s"),
+                      parse_positive("--push", text.substr(colon + 1), Dimension::time, "5000N:0.1s"));
 }
 
 Value finite(double value) {
@@ -167,10 +160,10 @@ void add_push_options(CLI::App& command, PushOptions& options) {
 PushPlan plan_push(const PushOptions& options) {
   PushPlan plan;
   plan.turns_with_body = options.direction == "body";
-  plan.sustained = parse_quantity("--sustained", options.sustained, Dimension::force, "500N");
-  plan.punch = parse_quantity("--punch", options.punch, Dimension::force, "5000N");
+  plan.sustained = parse_positive("--sustained", options.sustained, Dimension::force, "500N");
+  plan.punch = parse_positive("--punch", options.punch, Dimension::force, "5000N");
   if (!options.punch_duration.empty())
-    plan.punch_duration = parse_quantity("--punch-duration", options.punch_duration, Dimension::time, "20ms");
+    plan.punch_duration = parse_positive("--punch-duration", options.punch_duration, Dimension::time, "20ms");
   if (!options.push.empty()) plan.profile = parse_push(options.push);
   return plan;
 }

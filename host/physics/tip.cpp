@@ -129,9 +129,9 @@ Stance stand(TipBody body, const StandOptions& options) {
   if (z < left - slack || z > right + slack)
     throw Error(
         Fault::cannot_stand,
-        fmt::format("the body cannot stand: its barycentre, at z = {:.6g}, is not between the points that touch "
-                    "the ground, at z = {:.6g} to {:.6g}, so it falls to the {} unpushed{}",
-                    z, left, right, z < left ? "left" : "right",
+        fmt::format("the body cannot stand: it falls to the {} unpushed, its barycentre, at z = {:.6g}, not being "
+                    "between the points that touch the ground, at z = {:.6g} to {:.6g}{}",
+                    z < left ? "left" : "right", z, left, right,
                     options.as_modelled ? "; leave --as-modelled out to let it settle, or raise --contact-tolerance"
                                         : ""));
   stance.held = stance.contact.margin < -std::max(slack, 1e-9 * size);

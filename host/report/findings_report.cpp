@@ -94,7 +94,11 @@ void write_table(const Table& table, const Sink& sink) {
     for (const auto& row : table.rows) cells.push_back(cell_text(row[c]));
     std::size_t width = 0;
     for (const std::string& cell : cells) width = std::max(width, cell.size());
-    for (std::size_t r = 0; r < cells.size(); ++r) lines[r] += fmt::format("  {:>{}}", cells[r], width);
+    // Remarks at the end of the rows begin at one place and have any length.
+    const bool remarks = c + 1 == table.columns.size() && !table.rows.empty() &&
+                         std::holds_alternative<std::string>(table.rows.back().back());
+    for (std::size_t r = 0; r < cells.size(); ++r)
+      lines[r] += remarks ? "  " + cells[r] : fmt::format("  {:>{}}", cells[r], width);
   }
   sink(fmt::format("\n{}\n", table.label));
   for (const std::string& line : lines) sink(line + "\n");
