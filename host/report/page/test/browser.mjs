@@ -14,6 +14,7 @@ import {
   open as openIn,
   order,
   picture,
+  pixel,
   pixelsLike,
   red,
   settled,
@@ -197,6 +198,35 @@ test("a point of the body is marked on the map, and a point of the map on the bo
   await settled(page);
   assert.equal(await mark(page), null);
   assert.equal(await pixelsLike(page, "#map", red), 0);
+  await page.close();
+});
+
+test("the map's colour is the bar's for the value that is read out", async () => {
+  const page = await open("cow.html");
+  await order(page, 12);
+  await page.click("#graticule");
+  for (const direction of [
+    [0.8, 1.9],
+    [1.6, 0.3],
+    [2.3, 5.1],
+    [1.2, 3.6],
+  ]) {
+    const [x, y] = await onMap(page, direction);
+    await page.mouse.move(x, y);
+    await settled(page);
+    const value = await page.$$eval("#readout dd", (all) => Number(all[2].textContent.split(" ")[0]));
+    const [low, high] = await page.$$eval(".bar-ticks span", (all) =>
+      [all[0], all.at(-1)].map((tick) => Number(tick.textContent)),
+    );
+    const wanted = await pixel(page, "#bar", [Math.round((255 * (value - low)) / (high - low)), 0]);
+    const box = await (await page.$("#map canvas")).boundingBox();
+    const found = await pixel(page, "#map", [x - box.x, y - box.y]);
+    // The colours of the map are a raster of 720 pixels; a value's step there is a few of 256 colours.
+    assert.ok(
+      wanted.every((part, c) => Math.abs(part - found[c]) <= 12),
+      `${direction}: ${wanted} and ${found}`,
+    );
+  }
   await page.close();
 });
 

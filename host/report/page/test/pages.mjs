@@ -59,6 +59,14 @@ export async function choose(page, select, value) {
   await settled(page);
 }
 
+/// The colour [r, g, b] of a canvas at a point, in its css pixels; the window has one of the canvas's for each.
+export const pixel = (page, of, at) =>
+  page.$eval(
+    `${of} canvas`,
+    (canvas, [x, y]) => [...canvas.getContext("2d").getImageData(Math.floor(x), Math.floor(y), 1, 1).data].slice(0, 3),
+    at,
+  );
+
 /// Colours of a canvas: how many of its pixels have one like `[r, g, b]`.
 export const pixelsLike = (page, of, colour) =>
   page.$eval(
