@@ -24,8 +24,7 @@ export class SoftwareBody {
   }
 
   setColours(indices, table) {
-    for (let i = 0; i < indices.length; ++i)
-      for (let c = 0; c < 3; ++c) this.colours[3 * i + c] = table[3 * indices[i] + c];
+    for (let i = 0; i < indices.length; ++i) for (let c = 0; c < 3; ++c) this.colours[3 * i + c] = table[3 * indices[i] + c];
   }
 
   setLines(points) {
@@ -126,8 +125,7 @@ export class SoftwareBody {
         depth[at] = z;
         owner[at] = f;
         const bright = u * shades[0] + v * shades[1] + w * shades[2];
-        for (let k = 0; k < 3; ++k)
-          data[4 * at + k] = bright * (u * colours[a + k] + v * colours[b + k] + w * colours[c + k]);
+        for (let k = 0; k < 3; ++k) data[4 * at + k] = bright * (u * colours[a + k] + v * colours[b + k] + w * colours[c + k]);
         data[4 * at + 3] = 255;
       }
   }

@@ -36,12 +36,24 @@ export class WebglBody {
     this.camera.add(lamp, lamp.target);
     lamp.target.position.set(0, 0, -1);
     this.geometry = new BufferGeometry();
-    this.mesh = new Mesh(this.geometry, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
+    this.mesh = new Mesh(
+      this.geometry,
+      new MeshLambertMaterial({
+        vertexColors: true,
+        side: DoubleSide,
+        polygonOffset: true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
+      }),
+    );
     this.mesh.frustumCulled = false;
     this.lines = this.lineObject(0.32);
     this.ghost = this.lineObject(0.2);
     this.marker = new Mesh(new SphereGeometry(1, 20, 14), new MeshBasicMaterial({ depthTest: true }));
-    this.halo = new Mesh(new SphereGeometry(1, 20, 14), new MeshBasicMaterial({ transparent: true, opacity: 0.25, depthTest: false }));
+    this.halo = new Mesh(
+      new SphereGeometry(1, 20, 14),
+      new MeshBasicMaterial({ transparent: true, opacity: 0.25, depthTest: false }),
+    );
     this.marker.visible = this.halo.visible = false;
     this.scene.add(this.mesh, this.lines, this.ghost, this.halo, this.marker);
     this.ghost.visible = false;
@@ -50,14 +62,18 @@ export class WebglBody {
   }
 
   lineObject(opacity) {
-    const object = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity, depthWrite: false }));
+    const object = new LineSegments(
+      new BufferGeometry(),
+      new LineBasicMaterial({ transparent: true, opacity, depthWrite: false }),
+    );
     object.frustumCulled = false;
     return object;
   }
 
   setFaces(faces, vertices) {
     this.geometry.setIndex(new BufferAttribute(faces, 1));
-    for (const name of ["position", "normal", "color"]) this.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * vertices), 3));
+    for (const name of ["position", "normal", "color"])
+      this.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * vertices), 3));
   }
 
   setShape(positions, normals) {
@@ -70,8 +86,7 @@ export class WebglBody {
   /// `indices` into `table`, 256 colours of three bytes.
   setColours(indices, table) {
     const out = this.geometry.attributes.color.array;
-    for (let i = 0; i < indices.length; ++i)
-      for (let c = 0; c < 3; ++c) out[3 * i + c] = light[table[3 * indices[i] + c]];
+    for (let i = 0; i < indices.length; ++i) for (let c = 0; c < 3; ++c) out[3 * i + c] = light[table[3 * indices[i] + c]];
     this.geometry.attributes.color.needsUpdate = true;
   }
 

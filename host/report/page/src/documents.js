@@ -9,12 +9,20 @@ import { table } from "./table.js";
 export function coefficientTable(source, mass, fields, to) {
   const all = count(source.order);
   const names = mass ? ["Q_lm / R^l"] : fieldNames.map((name) => components[name].short);
-  const columns = [{ name: "l" }, { name: "m" }, ...fields.flatMap((f) => [{ name: `Re ${names[f]}` }, { name: `Im ${names[f]}` }])];
+  const columns = [
+    { name: "l" },
+    { name: "m" },
+    ...fields.flatMap((f) => [{ name: `Re ${names[f]}` }, { name: `Im ${names[f]}` }]),
+  ];
   const rows = [];
   for (let l = 0; l <= to; ++l)
     for (let m = 0; m <= l; ++m) {
       const at = index(source.order, l, m);
-      rows.push([l, m, ...fields.flatMap((f) => [source.coefficients[2 * (f * all + at)], source.coefficients[2 * (f * all + at) + 1]])]);
+      rows.push([
+        l,
+        m,
+        ...fields.flatMap((f) => [source.coefficients[2 * (f * all + at)], source.coefficients[2 * (f * all + at) + 1]]),
+      ]);
     }
   return table(`Coefficients of degrees 0 to ${to}, m \u2265 0`, columns, rows);
 }
@@ -24,7 +32,17 @@ const isTable = (value) => value && typeof value === "object" && Array.isArray(v
 const isMatrix = (value) => Array.isArray(value) && value.length > 0 && value.every(Array.isArray);
 
 function matrix(rows) {
-  return el("table", { class: "matrix" }, el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map((value) => el("td", {}, typeof value === "number" ? number(value) : valueText(value)))))));
+  return el(
+    "table",
+    { class: "matrix" },
+    el(
+      "tbody",
+      {},
+      ...rows.map((row) =>
+        el("tr", {}, ...row.map((value) => el("td", {}, typeof value === "number" ? number(value) : valueText(value)))),
+      ),
+    ),
+  );
 }
 
 function valueText(value) {
@@ -36,7 +54,8 @@ function valueText(value) {
   return JSON.stringify(value);
 }
 
-const flat = (value) => (Array.isArray(value) ? value.map(flat).join(" ") : typeof value === "object" && value ? JSON.stringify(value) : plain(value));
+const flat = (value) =>
+  Array.isArray(value) ? value.map(flat).join(" ") : typeof value === "object" && value ? JSON.stringify(value) : plain(value);
 
 function columnOf(column, i, units, rows) {
   const name = typeof column === "string" ? column : (column?.name ?? `column ${i + 1}`);
@@ -48,9 +67,23 @@ function columnOf(column, i, units, rows) {
 export function findings(document) {
   const part = el("section", { class: "findings" });
   const kind = String(document.schema ?? "").split(".")[1] ?? "document";
-  part.append(el("h3", {}, kind.replace(/^./, (c) => c.toUpperCase())));
+  part.append(
+    el(
+      "h3",
+      {},
+      kind.replace(/^./, (c) => c.toUpperCase()),
+    ),
+  );
   const input = document.input ?? {};
-  part.append(el("p", { class: "quiet" }, [input.name && `of ${input.name}`, Array.isArray(document.command) && document.command.slice(1).join(" ")].filter(Boolean).join("; ")));
+  part.append(
+    el(
+      "p",
+      { class: "quiet" },
+      [input.name && `of ${input.name}`, Array.isArray(document.command) && document.command.slice(1).join(" ")]
+        .filter(Boolean)
+        .join("; "),
+    ),
+  );
   for (const note of document.notes ?? []) part.append(el("p", { class: "note" }, String(note)));
   const units = document.units ?? {};
   const list = el("dl", { class: "facts" });
@@ -59,19 +92,43 @@ export function findings(document) {
   for (const [key, value] of Object.entries(document)) {
     if (headOf.has(key)) continue;
     if (isTable(value)) {
-      tables.push(table(words(key), value.columns.map((column, i) => columnOf(column, i, value.units, value.rows)), value.rows));
+      tables.push(
+        table(
+          words(key),
+          value.columns.map((column, i) => columnOf(column, i, value.units, value.rows)),
+          value.rows,
+        ),
+      );
       continue;
     }
     const unit = units[key] ? String(units[key]) : "";
     lines.push([key, flat(value), unit]);
-    list.append(el("div", {}, el("dt", {}, words(key)), el("dd", {}, isMatrix(value) ? matrix(value) : valueText(value), unit ? el("span", { class: "unit" }, ` ${unit}`) : null)));
+    list.append(
+      el(
+        "div",
+        {},
+        el("dt", {}, words(key)),
+        el(
+          "dd",
+          {},
+          isMatrix(value) ? matrix(value) : valueText(value),
+          unit ? el("span", { class: "unit" }, ` ${unit}`) : null,
+        ),
+      ),
+    );
   }
   part.append(list, ...tables);
   if (Array.isArray(document.paper) && document.paper.length > 0)
     part.append(
       table(
         "Beside the paper's numbers",
-        [{ name: "quantity", text: true }, { name: "here" }, { name: "paper" }, { name: "relative difference" }, { name: "why", text: true }],
+        [
+          { name: "quantity", text: true },
+          { name: "here" },
+          { name: "paper" },
+          { name: "relative difference" },
+          { name: "why", text: true },
+        ],
         document.paper.map((row) => [row.quantity, row.ours, row.paper, row.relative_difference, row.why || ""]),
       ),
     );
@@ -94,7 +151,12 @@ function facts(title, rows) {
 
 const lineOf = (command) => {
   const text = shellLine(command);
-  return el("span", { class: "command" }, el("code", {}, text), copyButton("Copy", () => text));
+  return el(
+    "span",
+    { class: "command" },
+    el("code", {}, text),
+    copyButton("Copy", () => text),
+  );
 };
 
 /// Where it all comes from.
@@ -104,7 +166,8 @@ export function provenance(data) {
   const device = result.device ?? {};
   const part = document.createDocumentFragment();
   const notes = [...(result.notes ?? []), ...(data.notes ?? [])];
-  if (notes.length > 0) part.append(el("section", {}, el("h3", {}, "Notes"), ...notes.map((note) => el("p", { class: "note" }, String(note)))));
+  if (notes.length > 0)
+    part.append(el("section", {}, el("h3", {}, "Notes"), ...notes.map((note) => el("p", { class: "note" }, String(note)))));
   part.append(
     facts("Result", [
       ["program", `${result.program?.name ?? "cowgpu"} ${result.program?.version ?? ""}`],
@@ -112,7 +175,12 @@ export function provenance(data) {
       ["created", result.created],
       ["device", [device.name, device.driver, device.api].filter(Boolean).join(", ") || null],
       ["kind of device", device.type],
-      ["accuracy", result.accuracy?.worst === undefined ? undefined : `${number(result.accuracy.worst, 3)}, bound ${number(result.accuracy.bound, 3)}: ${result.accuracy.passed ? "passed" : "failed"}`],
+      [
+        "accuracy",
+        result.accuracy?.worst === undefined
+          ? undefined
+          : `${number(result.accuracy.worst, 3)}, bound ${number(result.accuracy.bound, 3)}: ${result.accuracy.passed ? "passed" : "failed"}`,
+      ],
       ["time in all", typeof result.timings?.total === "number" ? `${number(result.timings.total, 4)} s` : undefined],
     ]),
     facts("Mesh", [
@@ -139,7 +207,10 @@ export function provenance(data) {
         ["convention", `${about.normalisation}, ${about.condon_shortley ? "with" : "without"} the Condon-Shortley phase`],
         ["axes", about.axes],
         ["units", about.units],
-        ["removed means of the angles", about.removed_means ? [about.removed_means.f_dtheta, about.removed_means.f_dphi] : undefined],
+        [
+          "removed means of the angles",
+          about.removed_means ? [about.removed_means.f_dtheta, about.removed_means.f_dphi] : undefined,
+        ],
         ["triangles flipped by the map", map.flipped],
         ["triangles smaller than the grid's cells", map.unseen],
         ["grid", about.grid ? `${about.grid.rings} rings of ${about.grid.ring_length}` : undefined],
@@ -156,12 +227,14 @@ export function provenance(data) {
         ["cut-off", data.mass.about.cut_off],
       ]),
     );
-  part.append(facts("This page", [
-    ["program", `${data.program.name} ${data.program.version}`],
-    ["command", lineOf(data.command)],
-    ["created", data.created],
-    ["drawn with", "three.js, d3-geo, d3-geo-projection, d3-scale, d3-scale-chromatic"],
-  ]));
+  part.append(
+    facts("This page", [
+      ["program", `${data.program.name} ${data.program.version}`],
+      ["command", lineOf(data.command)],
+      ["created", data.created],
+      ["drawn with", "three.js, d3-geo, d3-geo-projection, d3-scale, d3-scale-chromatic"],
+    ]),
+  );
   const licences = $("licences").textContent;
   part.append(el("details", {}, el("summary", {}, "Licences of what it is drawn with"), el("pre", {}, licences)));
   return part;

@@ -61,3 +61,9 @@ export function copyButton(label, text) {
   });
   return button;
 }
+
+/// Gives a <select> its entries, [value, label] each.
+export function options(select, entries, chosen) {
+  select.replaceChildren(...entries.map(([value, label]) => el("option", { value }, label)));
+  select.value = chosen;
+}

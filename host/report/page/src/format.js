@@ -1,7 +1,19 @@
 // Numbers and names as they are shown.
 
 const minus = "\u2212";
-const raised = { "-": "\u207b", 0: "\u2070", 1: "\u00b9", 2: "\u00b2", 3: "\u00b3", 4: "\u2074", 5: "\u2075", 6: "\u2076", 7: "\u2077", 8: "\u2078", 9: "\u2079" };
+const raised = {
+  "-": "\u207b",
+  0: "\u2070",
+  1: "\u00b9",
+  2: "\u00b2",
+  3: "\u00b3",
+  4: "\u2074",
+  5: "\u2075",
+  6: "\u2076",
+  7: "\u2077",
+  8: "\u2078",
+  9: "\u2079",
+};
 export const notKnown = "not known";
 
 export const superscript = (n) => [...String(n)].map((c) => raised[c]).join("");
@@ -28,7 +40,6 @@ export function plain(value) {
 export const poles = (name) => name.replace(/\^(\d+)/, (_, n) => superscript(n));
 
 export const degrees = (radians, digits = 1) => `${((radians * 180) / Math.PI).toFixed(digits).replace("-", minus)}\u00b0`;
-export const fixed = (value, digits) => value.toFixed(digits).replace("-", minus);
 
 /// "qdddot2_over_omega6_SI" as words.
 export const words = (key) => key.replaceAll("_", " ");

@@ -70,7 +70,13 @@ export class SphereMap {
     this.canvas.height = Math.round(height * ratio);
     this.ratio = ratio;
     this.size = [width, height];
-    this.projection = flat().fitExtent([[margin, margin], [width - margin, height - margin]], { type: "Sphere" });
+    this.projection = flat().fitExtent(
+      [
+        [margin, margin],
+        [width - margin, height - margin],
+      ],
+      { type: "Sphere" },
+    );
   }
 
   draw() {
@@ -92,7 +98,14 @@ export class SphereMap {
     context.drawImage(this.raster, x0, y0, x1 - x0, y1 - y0);
     context.restore();
     if (this.graticule) {
-      outline(geoGraticule().step([30, 30]).extent([[-180, -89.9], [180, 89.9]])());
+      outline(
+        geoGraticule()
+          .step([30, 30])
+          .extent([
+            [-180, -89.9],
+            [180, 89.9],
+          ])(),
+      );
       context.strokeStyle = colour("--map-lines");
       context.lineWidth = 0.8;
       context.stroke();
@@ -107,7 +120,10 @@ export class SphereMap {
   drawMark() {
     const { context } = this;
     const [x, y] = this.projection(toLonLat(this.mark));
-    for (const [radius, width, stroke] of [[7, 4, colour("--marker-rim")], [7, 2, colour("--marker")]]) {
+    for (const [radius, width, stroke] of [
+      [7, 4, colour("--marker-rim")],
+      [7, 2, colour("--marker")],
+    ]) {
       context.beginPath();
       context.arc(x, y, radius, 0, 2 * Math.PI);
       context.lineWidth = width;

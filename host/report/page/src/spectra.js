@@ -15,12 +15,27 @@ const shapes = ["", "7 3", "2 3", "9 3 2 3", "5 2", "1 4"];
 export function quantities(source) {
   const degreesOf = (f) => source.power[f];
   const all = {
-    power: { label: "power of a degree, S_l", note: "S_l = sum over m of |a_lm|\u00b2", unit: "square of the field's unit", lines: source.power },
-    mean: { label: "power of one coefficient, S_l / (2l+1)", note: "the mean of |a_lm|\u00b2 over m", unit: "square of the field's unit", lines: source.power.map((_, f) => degreesOf(f).map((value, l) => value / (2 * l + 1))) },
+    power: {
+      label: "power of a degree, S_l",
+      note: "S_l = sum over m of |a_lm|\u00b2",
+      unit: "square of the field's unit",
+      lines: source.power,
+    },
+    mean: {
+      label: "power of one coefficient, S_l / (2l+1)",
+      note: "the mean of |a_lm|\u00b2 over m",
+      unit: "square of the field's unit",
+      lines: source.power.map((_, f) => degreesOf(f).map((value, l) => value / (2 * l + 1))),
+    },
   };
   const left = source.about.truncation;
   if (Array.isArray(left) && left.length > 0)
-    all.left = { label: "what degrees to l leave out", note: "root mean square over the sphere of the field less its degrees 0 to l", unit: "the field's unit", lines: source.power.map((_, f) => left.map((row) => row[f])) };
+    all.left = {
+      label: "what degrees to l leave out",
+      note: "root mean square over the sphere of the field less its degrees 0 to l",
+      unit: "the field's unit",
+      lines: source.power.map((_, f) => left.map((row) => row[f])),
+    };
   return all;
 }
 
@@ -47,7 +62,12 @@ export function drawSpectrum(place, state, changed) {
   const drawn = lines.filter((line) => !state.hidden.has(line.name));
   const degreesThere = quantity.lines[0].length - 1;
   const values = drawn.flatMap((line) => line.values.slice(1)).filter(positive);
-  const chart = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "chart", role: "img", "aria-label": `${quantity.label} over the degree, both axes logarithmic. The table below has the numbers.` });
+  const chart = svg("svg", {
+    viewBox: `0 0 ${width} ${height}`,
+    class: "chart",
+    role: "img",
+    "aria-label": `${quantity.label} over the degree, both axes logarithmic. The table below has the numbers.`,
+  });
   const figure = el("figure", { class: "spectrum" });
   const readout = el("p", { class: "chart-readout" }, "\u00a0");
   const legend = el("div", { class: "legend", role: "group", "aria-label": "Lines" });
@@ -61,7 +81,11 @@ export function drawSpectrum(place, state, changed) {
       changed(line.name);
     });
     box.dataset.line = line.name;
-    const sample = svg("svg", { viewBox: "0 0 26 10", width: 26, height: 10, "aria-hidden": "true" }, svg("line", { x1: 0, x2: 26, y1: 5, y2: 5, class: `line series-${line.at}`, "stroke-dasharray": shapes[line.at] }));
+    const sample = svg(
+      "svg",
+      { viewBox: "0 0 26 10", width: 26, height: 10, "aria-hidden": "true" },
+      svg("line", { x1: 0, x2: 26, y1: 5, y2: 5, class: `line series-${line.at}`, "stroke-dasharray": shapes[line.at] }),
+    );
     legend.append(el("label", { class: "check" }, box, sample, line.label));
   }
   if (values.length === 0 || degreesThere < 1) {
@@ -72,7 +96,16 @@ export function drawSpectrum(place, state, changed) {
     const x = scaleLog([1, Math.max(degreesThere, 2)], [edge.left, width - edge.right]);
     const y = scaleLog([low / 1.5, high * 1.8], [height - edge.bottom, edge.top]);
     chart.append(...axes(x, y, width, degreesThere, quantity));
-    const clip = svg("clipPath", { id: "plot" }, svg("rect", { x: edge.left, y: edge.top, width: width - edge.left - edge.right, height: height - edge.top - edge.bottom }));
+    const clip = svg(
+      "clipPath",
+      { id: "plot" },
+      svg("rect", {
+        x: edge.left,
+        y: edge.top,
+        width: width - edge.left - edge.right,
+        height: height - edge.top - edge.bottom,
+      }),
+    );
     chart.append(svg("defs", {}, clip));
     const now = svg("line", { class: "now", y1: edge.top, y2: height - edge.bottom });
     chart.append(now);
@@ -94,10 +127,26 @@ export function drawSpectrum(place, state, changed) {
         path += `${pen}${x(l).toFixed(2)},${y(line.values[l]).toFixed(2)}`;
         pen = "L";
       }
-      chart.append(svg("path", { d: path, class: `line series-${line.at}`, "stroke-dasharray": shapes[line.at], "clip-path": "url(#plot)" }));
+      chart.append(
+        svg("path", {
+          d: path,
+          class: `line series-${line.at}`,
+          "stroke-dasharray": shapes[line.at],
+          "clip-path": "url(#plot)",
+        }),
+      );
       if (degreesThere <= 40)
         for (let l = 1; l <= degreesThere; ++l)
-          if (positive(line.values[l])) chart.append(svg("circle", { cx: x(l), cy: y(line.values[l]), r: 2.4, class: `dot series-${line.at}`, "clip-path": "url(#plot)" }));
+          if (positive(line.values[l]))
+            chart.append(
+              svg("circle", {
+                cx: x(l),
+                cy: y(line.values[l]),
+                r: 2.4,
+                class: `dot series-${line.at}`,
+                "clip-path": "url(#plot)",
+              }),
+            );
     }
     const cursor = svg("line", { class: "cursor", y1: edge.top, y2: height - edge.bottom, visibility: "hidden" });
     chart.append(cursor);
@@ -116,10 +165,23 @@ export function drawSpectrum(place, state, changed) {
     });
     figure.append(legend, chart, readout);
   }
-  const zero = lines.map((line) => `${line.label} ${positive(line.values[0]) ? number(line.values[0], 5) : line.values[0] === 0 ? "0" : notKnown}`);
-  figure.append(el("figcaption", { class: "quiet" }, `${quantity.note}; ${quantity.unit}. Degree 0, which a logarithmic axis has no place for: ${zero.join(", ")}.`));
+  const zero = lines.map(
+    (line) => `${line.label} ${positive(line.values[0]) ? number(line.values[0], 5) : line.values[0] === 0 ? "0" : notKnown}`,
+  );
+  figure.append(
+    el(
+      "figcaption",
+      { class: "quiet" },
+      `${quantity.note}; ${quantity.unit}. Degree 0, which a logarithmic axis has no place for: ${zero.join(", ")}.`,
+    ),
+  );
   const rows = Array.from({ length: degreesThere + 1 }, (_, l) => [l, ...quantity.lines.map((line) => line[l])]);
-  const details = el("details", {}, el("summary", {}, "As a table"), table(`${quantity.label}, by degree`, [{ name: "l" }, ...labels.map((name) => ({ name }))], rows));
+  const details = el(
+    "details",
+    {},
+    el("summary", {}, "As a table"),
+    table(`${quantity.label}, by degree`, [{ name: "l" }, ...labels.map((name) => ({ name }))], rows),
+  );
   place.replaceChildren(figure, details);
   return figure;
 }
@@ -130,7 +192,10 @@ function axes(x, y, width, degreesThere, quantity) {
   const tick = (label, attributes) => svg("text", { class: "tick", ...attributes }, label);
   for (const n of powersBetween(...y.domain(), 9)) {
     const at = y(10 ** n);
-    parts.push(svg("line", { class: "grid", x1: edge.left, x2: width - edge.right, y1: at, y2: at }), tick(power10(n), { x: edge.left - 8, y: at + 4, "text-anchor": "end" }));
+    parts.push(
+      svg("line", { class: "grid", x1: edge.left, x2: width - edge.right, y1: at, y2: at }),
+      tick(power10(n), { x: edge.left - 8, y: at + 4, "text-anchor": "end" }),
+    );
   }
   for (let decade = 1; decade <= degreesThere; decade *= 10)
     for (const digit of [1, 2, 3, 4, 5, 6, 7, 8, 9]) {
@@ -141,8 +206,18 @@ function axes(x, y, width, degreesThere, quantity) {
       parts.push(svg("line", { class: named ? "grid" : "grid faint", x1: at, x2: at, y1: edge.top, y2: bottom }));
       if (named) parts.push(tick(String(l), { x: at, y: bottom + 18, "text-anchor": "middle" }));
     }
-  parts.push(svg("line", { class: "axis", x1: edge.left, x2: width - edge.right, y1: bottom, y2: bottom }), svg("line", { class: "axis", x1: edge.left, x2: edge.left, y1: edge.top, y2: bottom }));
+  parts.push(
+    svg("line", { class: "axis", x1: edge.left, x2: width - edge.right, y1: bottom, y2: bottom }),
+    svg("line", { class: "axis", x1: edge.left, x2: edge.left, y1: edge.top, y2: bottom }),
+  );
   parts.push(tick("degree l", { x: (edge.left + width - edge.right) / 2, y: height - 6, "text-anchor": "middle" }));
-  parts.push(tick(quantity.label, { x: 14, y: (edge.top + bottom) / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${(edge.top + bottom) / 2})` }));
+  parts.push(
+    tick(quantity.label, {
+      x: 14,
+      y: (edge.top + bottom) / 2,
+      "text-anchor": "middle",
+      transform: `rotate(-90 14 ${(edge.top + bottom) / 2})`,
+    }),
+  );
   return parts;
 }

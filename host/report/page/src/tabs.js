@@ -5,7 +5,11 @@ import { $, el } from "./dom.js";
 export function makeTabs(tabs) {
   const filled = new Set();
   const buttons = tabs.map((tab, i) => {
-    const button = el("button", { type: "button", role: "tab", id: `tab-${tab.id}`, "aria-controls": `panel-${tab.id}` }, tab.label);
+    const button = el(
+      "button",
+      { type: "button", role: "tab", id: `tab-${tab.id}`, "aria-controls": `panel-${tab.id}` },
+      tab.label,
+    );
     button.addEventListener("click", () => show(i));
     button.addEventListener("keydown", (event) => {
       const to = { ArrowRight: i + 1, ArrowLeft: i - 1, Home: 0, End: tabs.length - 1 }[event.key];
@@ -17,7 +21,9 @@ export function makeTabs(tabs) {
     });
     return button;
   });
-  const panels = tabs.map((tab) => el("div", { role: "tabpanel", id: `panel-${tab.id}`, "aria-labelledby": `tab-${tab.id}`, tabindex: "0", hidden: true }));
+  const panels = tabs.map((tab) =>
+    el("div", { role: "tabpanel", id: `panel-${tab.id}`, "aria-labelledby": `tab-${tab.id}`, tabindex: "0", hidden: true }),
+  );
   const fill = (i) => {
     panels[i].replaceChildren();
     tabs[i].fill(panels[i]);

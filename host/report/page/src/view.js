@@ -32,7 +32,8 @@ export class View {
         spread = now;
       } else this.turn((event.clientX - before[0]) / 160, (event.clientY - before[1]) / 160);
     });
-    for (const end of ["pointerup", "pointercancel"]) element.addEventListener(end, (event) => pointers.delete(event.pointerId));
+    for (const end of ["pointerup", "pointercancel"])
+      element.addEventListener(end, (event) => pointers.delete(event.pointerId));
     element.addEventListener("pointerleave", () => hover(null));
     element.addEventListener(
       "wheel",
@@ -90,5 +91,4 @@ export class View {
     const c = Math.cos(this.elevation);
     return [c * Math.sin(this.azimuth), Math.sin(this.elevation), c * Math.cos(this.azimuth)];
   }
-
 }

@@ -4,15 +4,28 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import puppeteer from "puppeteer-core";
+import {
+  choose,
+  clickHead,
+  launch,
+  mark,
+  middle,
+  onMap,
+  open as openIn,
+  order,
+  picture,
+  pixel,
+  pixelsLike,
+  red,
+  settled,
+  words,
+} from "./pages.mjs";
 import { file, json, print, run } from "./support.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const hostile = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 2'>";
-const patience = 240000; // the software renderer on a busy machine
-const software = ["--no-sandbox", "--disable-dev-shm-usage"]; // as root in a container
-const webgl = [...software, "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 let browser;
+const open = (name, options) => openIn(browser, name, options);
 
 before(async () => {
   run("expand", "builtin:cow@1", "--of", "mass,stretch,harmonic", "--lmax", "12", "-q", "-o", file("cow.json"));
@@ -27,10 +40,30 @@ before(async () => {
     [hostile]: hostile,
     torque: null,
     units: { torque: "N m" },
-    orders: { columns: ["order", "error", "word"], units: ["", "m", ""], rows: [[2, 0.5, hostile], [10, null, "b"], [1, 1e-9, "a"]] },
+    orders: {
+      columns: ["order", "error", "word"],
+      units: ["", "m", ""],
+      rows: [
+        [2, 0.5, hostile],
+        [10, null, "b"],
+        [1, 1e-9, "a"],
+      ],
+    },
   };
   writeFileSync(file("tip.json"), JSON.stringify(findings));
-  run("report", file("cow.json"), "--mesh", "builtin:cow@1", "--physics", file("tensors.json"), "--physics", file("tip.json"), "-q", "-o", file("cow.html"));
+  run(
+    "report",
+    file("cow.json"),
+    "--mesh",
+    "builtin:cow@1",
+    "--physics",
+    file("tensors.json"),
+    "--physics",
+    file("tip.json"),
+    "-q",
+    "-o",
+    file("cow.html"),
+  );
   const renamed = json("cow.json");
   renamed.mesh.name = hostile;
   renamed.notes = [hostile];
@@ -41,80 +74,10 @@ before(async () => {
   run("expand", "builtin:box:1,2,3", "--lmax", "6", "-q", "-o", file("box.json"));
   run("report", file("box.json"), "-q", "-o", file("box.html"));
   run("report", file("box.json"), "--mesh", "builtin:box:1,2,3", "-q", "-o", file("box-mesh.html"));
-  browser = await puppeteer.launch({ executablePath: process.env.CHROMIUM, headless: true, args: webgl, protocolTimeout: patience });
+  browser = await launch();
 });
 
 after(() => browser?.close());
-
-/// A page, opened, with all that it said and asked for in page.said and page.asked.
-async function open(name, { features = [], width = 1200, height = 1000, from = browser } = {}) {
-  const page = await from.newPage();
-  page.setDefaultTimeout(patience);
-  page.said = [];
-  page.asked = [];
-  page.on("console", (message) => page.said.push(message.text()));
-  page.on("pageerror", (error) => page.said.push(String(error)));
-  page.on("request", (request) => page.asked.push(request.url()));
-  await page.setViewport({ width, height });
-  await page.emulateMediaFeatures(features);
-  await page.goto(pathToFileURL(file(name)).href);
-  await settled(page);
-  return page;
-}
-
-/// Two frames later: what was to be drawn is drawn.
-const settled = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-
-const picture = (page, of) => page.$eval(`${of} canvas`, (canvas) => canvas.toDataURL());
-const words = (page, of) => page.$eval(of, (element) => element.textContent);
-const mark = async (page) => {
-  const text = await page.$eval("#readout", (element) => element.dataset.mark);
-  return text ? text.split(" ").map(Number) : null;
-};
-
-async function order(page, value) {
-  await page.$eval("#order-number", (box, to) => {
-    box.value = to;
-    box.dispatchEvent(new Event("input"));
-  }, value);
-  await settled(page);
-}
-
-async function choose(page, select, value) {
-  await page.select(select, value);
-  await settled(page);
-}
-
-/// Colours of a canvas: how many of its pixels have one like `[r, g, b]`.
-const pixelsLike = (page, of, colour) =>
-  page.$eval(`${of} canvas`, (canvas, wanted) => {
-    const copy = document.createElement("canvas");
-    [copy.width, copy.height] = [canvas.width, canvas.height];
-    const context = copy.getContext("2d");
-    context.drawImage(canvas, 0, 0);
-    const { data } = context.getImageData(0, 0, copy.width, copy.height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) count += data[i + 3] > 200 && wanted.every((value, c) => Math.abs(data[i + c] - value) < 24);
-    return count;
-  }, colour);
-
-const red = [213, 68, 43]; // --marker by day
-
-/// Where Mollweide's projection has a direction on the map's canvas, in css pixels of the window (Snyder 1987, p. 249).
-async function onMap(page, [theta, phi]) {
-  const box = await (await page.$("#map canvas")).boundingBox();
-  const radius = Math.min((box.width - 4) / 2, box.height - 4) / 2;
-  const latitude = Math.PI / 2 - theta;
-  let t = latitude;
-  for (let k = 0; k < 100; ++k) t -= (2 * t + Math.sin(2 * t) - Math.PI * Math.sin(latitude)) / (2 + 2 * Math.cos(2 * t) + 1e-12);
-  const longitude = phi > Math.PI ? phi - 2 * Math.PI : phi;
-  return [box.x + box.width / 2 + (2 * radius * longitude * Math.cos(t)) / Math.PI, box.y + box.height / 2 - radius * Math.sin(t)];
-}
-
-const middle = async (page, of, right = 0.5, down = 0.5) => {
-  const box = await (await page.$(`${of} canvas`)).boundingBox();
-  return [box.x + right * box.width, box.y + down * box.height];
-};
 
 test("it opens without a word on the console and without a request", async () => {
   const page = await open("cow.html");
@@ -123,7 +86,10 @@ test("it opens without a word on the console and without a request", async () =>
   await page.select("#surface", "harmonic");
   await settled(page);
   assert.deepEqual(page.said, []);
-  assert.deepEqual(page.asked.filter((url) => !url.startsWith("data:")), [page.url()]);
+  assert.deepEqual(
+    page.asked.filter((url) => !url.startsWith("data:")),
+    [page.url()],
+  );
   assert.equal(await page.$eval("#body", (body) => body.dataset.by), "webgl");
   await page.close();
 });
@@ -131,14 +97,22 @@ test("it opens without a word on the console and without a request", async () =>
 test("its policy forbids what it does not need", async () => {
   const page = await open("cow.html");
   const refused = await page.evaluate(async () => {
-    const tries = [fetch("https://example.invalid/").then(() => "fetched", () => "refused")];
+    const tries = [
+      fetch("https://example.invalid/").then(
+        () => "fetched",
+        () => "refused",
+      ),
+    ];
     const script = document.createElement("script");
     script.textContent = "window.injected = true";
     document.body.append(script);
     return [...(await Promise.all(tries)), window.injected ?? "refused"];
   });
   assert.deepEqual(refused, ["refused", "refused"]);
-  assert.ok(page.said.some((line) => /Content Security Policy/.test(line)), page.said.join("\n"));
+  assert.ok(
+    page.said.some((line) => /Content Security Policy/.test(line)),
+    page.said.join("\n"),
+  );
   await page.close();
 });
 
@@ -174,7 +148,12 @@ test("maps, fields and components change what is drawn", async () => {
   const page = await open("cow.html");
   await order(page, 12);
   const seen = new Set([await picture(page, "#body")]);
-  for (const [select, value] of [["#component", "f_dphi"], ["#component", "distance"], ["#shape", "f"], ["#surface", "harmonic"]]) {
+  for (const [select, value] of [
+    ["#component", "f_dphi"],
+    ["#component", "distance"],
+    ["#shape", "f"],
+    ["#surface", "harmonic"],
+  ]) {
     await choose(page, select, value);
     seen.add(await picture(page, "#body"));
   }
@@ -222,6 +201,35 @@ test("a point of the body is marked on the map, and a point of the map on the bo
   await page.close();
 });
 
+test("the map's colour is the bar's for the value that is read out", async () => {
+  const page = await open("cow.html");
+  await order(page, 12);
+  await page.click("#graticule");
+  for (const direction of [
+    [0.8, 1.9],
+    [1.6, 0.3],
+    [2.3, 5.1],
+    [1.2, 3.6],
+  ]) {
+    const [x, y] = await onMap(page, direction);
+    await page.mouse.move(x, y);
+    await settled(page);
+    const value = await page.$$eval("#readout dd", (all) => Number(all[2].textContent.split(" ")[0]));
+    const [low, high] = await page.$$eval(".bar-ticks span", (all) =>
+      [all[0], all.at(-1)].map((tick) => Number(tick.textContent)),
+    );
+    const wanted = await pixel(page, "#bar", [Math.round((255 * (value - low)) / (high - low)), 0]);
+    const box = await (await page.$("#map canvas")).boundingBox();
+    const found = await pixel(page, "#map", [x - box.x, y - box.y]);
+    // The colours of the map are a raster of 720 pixels; a value's step there is a few of 256 colours.
+    assert.ok(
+      wanted.every((part, c) => Math.abs(part - found[c]) <= 12),
+      `${direction}: ${wanted} and ${found}`,
+    );
+  }
+  await page.close();
+});
+
 test("keys turn the body, move the point, and screen readers hear of it", async () => {
   const page = await open("cow.html");
   await page.focus("#body canvas");
@@ -243,33 +251,48 @@ test("keys turn the body, move the point, and screen readers hear of it", async 
   await page.close();
 });
 
-/// The button of a column whose head begins with `name`, clicked.
-const clickHead = (page, panel, name) =>
-  page.$eval(panel, (element, wanted) => [...element.querySelectorAll("thead button")].find((button) => button.textContent.startsWith(wanted)).click(), name);
-
 test("tables sort, and copy every digit", async () => {
   const page = await open("cow.html");
-  await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: { writeText: async (text) => void (window.copied = text) } }));
+  await page.evaluate(() =>
+    Object.defineProperty(navigator, "clipboard", { value: { writeText: async (text) => void (window.copied = text) } }),
+  );
   await page.click("#tab-coefficients");
   await clickHead(page, "#panel-coefficients", "Re f_r");
   await page.click("#panel-coefficients .copy");
   await page.waitForFunction(() => window.copied);
-  const lines = (await page.evaluate(() => window.copied)).trimEnd().split("\n").map((line) => line.split("\t"));
+  const lines = (await page.evaluate(() => window.copied))
+    .trimEnd()
+    .split("\n")
+    .map((line) => line.split("\t"));
   assert.deepEqual(lines[0].slice(0, 4), ["l", "m", "Re f_r", "Im f_r"]);
   const rows = lines.slice(1).map((line) => line.map(Number));
   assert.equal(rows.length, 15);
   rows.slice(1).forEach((row, i) => assert.ok(row[2] >= rows[i][2]));
   const known = new Map(json("cow.json").expansions.stretch.coefficients.map((row) => [`${row[0]} ${row[1]}`, row]));
-  for (const row of rows) assert.deepEqual(row.slice(2), known.get(`${row[0]} ${row[1]}`).slice(2, 8).map((value) => value + 0));
+  for (const row of rows)
+    assert.deepEqual(
+      row.slice(2),
+      known
+        .get(`${row[0]} ${row[1]}`)
+        .slice(2, 8)
+        .map((value) => value + 0),
+    );
   await clickHead(page, "#panel-coefficients", "Re f_r");
-  const largest = await page.$eval("#panel-coefficients tbody tr", (row) => [...row.children].slice(0, 2).map((cell) => Number(cell.textContent)));
+  const largest = await page.$eval("#panel-coefficients tbody tr", (row) =>
+    [...row.children].slice(0, 2).map((cell) => Number(cell.textContent)),
+  );
   assert.deepEqual(largest, rows.at(-1).slice(0, 2));
   assert.equal(await page.$eval("#panel-coefficients [aria-sort=descending]", (head) => head.textContent), "Re f_r");
 
   await page.click("#tab-physics");
   await clickHead(page, "#panel-physics .findings:last-of-type", "error");
-  const errors = await page.$$eval("#panel-physics .findings:last-of-type tbody tr td:nth-child(2)", (cells) => cells.map((cell) => cell.textContent));
-  assert.deepEqual(errors.map((text) => text === "not known"), [false, false, true]);
+  const errors = await page.$$eval("#panel-physics .findings:last-of-type tbody tr td:nth-child(2)", (cells) =>
+    cells.map((cell) => cell.textContent),
+  );
+  assert.deepEqual(
+    errors.map((text) => text === "not known"),
+    [false, false, true],
+  );
   assert.equal(errors[1], "0.500000");
   await page.close();
 });
@@ -283,23 +306,43 @@ test("where the browser has no clipboard for pages, a selection is copied", asyn
   await page.click("#tab-provenance");
   await page.click("#panel-provenance .copy");
   await page.waitForFunction(() => window.copied);
-  assert.match(await words(page, "#panel-provenance pre"), /d3-geo 3[^]*Mike Bostock[^]*three 0[^]*Permission is hereby granted/);
+  assert.match(
+    await words(page, "#panel-provenance pre"),
+    /d3-geo 3[^]*Mike Bostock[^]*three 0[^]*Permission is hereby granted/,
+  );
   assert.match(await page.evaluate(() => window.copied), /expand builtin:cow@1 --of mass,stretch,harmonic --lmax 12/);
   await page.close();
 });
 
 test("axe-core finds nothing, on any tab, by day, by night, on a phone", async () => {
   const features = (scheme) => [{ name: "prefers-color-scheme", value: scheme }];
-  for (const [scheme, width] of [["light", 1200], ["dark", 1200], ["light", 390]]) {
+  const all = ["spectra", "coefficients", "physics", "provenance"];
+  for (const [scheme, width, tabs] of [
+    ["light", 1000, all],
+    ["dark", 1000, all],
+    ["light", 390, ["physics"]],
+  ]) {
     const page = await open("cow.html", { features: features(scheme), width });
     await page.evaluate(axe);
-    for (const tab of ["spectra", "coefficients", "physics", "provenance"]) {
+    for (const tab of tabs) {
       await page.click(`#tab-${tab}`);
-      await page.$$eval("details", (all) => all.forEach((one) => (one.open = true)));
+      await page.$$eval("details", (every) => every.forEach((one) => (one.open = true)));
       await page.mouse.move(...(await middle(page, "#map")));
       await settled(page);
-      const { violations, passes } = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"] }));
-      assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(" ").slice(0, 400)}`), [], `${tab}, ${scheme}, ${width}`);
+      const { violations, passes } = await page.evaluate(() =>
+        window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"] }),
+      );
+      assert.deepEqual(
+        violations.map(
+          ({ id, nodes }) =>
+            `${id}: ${nodes
+              .map((node) => node.html)
+              .join(" ")
+              .slice(0, 400)}`,
+        ),
+        [],
+        `${tab}, ${scheme}, ${width}`,
+      );
       assert.ok(passes.length > 20);
     }
     await page.close();
@@ -387,12 +430,15 @@ test("a result without a surface has its spectra and tables, and the mesh where 
 });
 
 test("where there is no WebGL the body is drawn all the same, and says so", async () => {
-  const plain = await puppeteer.launch({ executablePath: process.env.CHROMIUM, headless: true, args: [...software, "--disable-3d-apis"], protocolTimeout: patience });
+  const plain = await launch({ webgl: false });
   try {
-    const page = await open("cow.html", { from: plain });
+    const page = await openIn(plain, "cow.html");
     assert.equal(await page.$eval("#body", (body) => body.dataset.by), "software");
     assert.match(await words(page, "#body-panel"), /WebGL is not to be had here/);
-    assert.deepEqual(page.said.filter((line) => !/WebGL/.test(line)), []); // three.js says why
+    assert.deepEqual(
+      page.said.filter((line) => !/WebGL/.test(line)),
+      [],
+    ); // three.js says why
     const seen = new Set();
     for (const value of [0, 3, 12]) {
       await order(page, value);

@@ -12,7 +12,8 @@ export const text = (name) => readFileSync(file(name), "utf8");
 export const json = (name) => JSON.parse(text(name));
 
 /// Runs the program; returns what it printed.
-export const print = (...words) => execFileSync(process.env.COWGPU_PROGRAM, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], maxBuffer: 1e9 });
+export const print = (...words) =>
+  execFileSync(process.env.COWGPU_PROGRAM, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], maxBuffer: 1e9 });
 /// The same on the CPU path.
 export const run = (...words) => print(...words, "--device", "cpu");
 

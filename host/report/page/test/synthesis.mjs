@@ -23,14 +23,18 @@ function plyVertices(path) {
   assert.match(header, /format binary_little_endian/);
   const count = Number(header.match(/element vertex (\d+)/)[1]);
   const sizes = { double: 8, float: 4, int: 4, uint: 4, uchar: 1 };
-  const properties = [...header.split(/element face/)[0].matchAll(/property (\w+) (\w+)/g)].map(([, type, name]) => ({ type, name }));
+  const properties = [...header.split(/element face/)[0].matchAll(/property (\w+) (\w+)/g)].map(([, type, name]) => ({
+    type,
+    name,
+  }));
   const stride = properties.reduce((sum, { type }) => sum + sizes[type], 0);
   const out = new Float64Array(3 * count);
   let offset = end;
   for (const { type, name } of properties) {
     const c = ["x", "y", "z"].indexOf(name);
     if (c >= 0)
-      for (let i = 0; i < count; ++i) out[3 * i + c] = type === "double" ? bytes.readDoubleLE(offset + i * stride) : bytes.readFloatLE(offset + i * stride);
+      for (let i = 0; i < count; ++i)
+        out[3 * i + c] = type === "double" ? bytes.readDoubleLE(offset + i * stride) : bytes.readFloatLE(offset + i * stride);
     offset += sizes[type];
   }
   return out;
@@ -39,7 +43,19 @@ function plyVertices(path) {
 test("bodies of every order and both kinds of fields are the program's", () => {
   const resolution = (data.grid.rings - 1) / 2;
   for (const fields of ["xyz", "f"]) {
-    run("reconstruct", file("cow.json"), "--fields", fields, "--order", "0,1,7,20", "--resolution", String(resolution), "-q", "-o", file(`${fields}-{}.ply`));
+    run(
+      "reconstruct",
+      file("cow.json"),
+      "--fields",
+      fields,
+      "--order",
+      "0,1,7,20",
+      "--resolution",
+      String(resolution),
+      "-q",
+      "-o",
+      file(`${fields}-{}.ply`),
+    );
     for (const order of [0, 1, 7, 20]) {
       const here = model.bodyAt(surface, fields, order);
       const there = plyVertices(file(`${fields}-${order}.ply`));
@@ -72,7 +88,11 @@ test("Legendre functions are orthonormal and have the closed forms of low degree
   const theta = 0.7;
   const p = legendre(3, theta);
   const [c, s] = [Math.cos(theta), Math.sin(theta)];
-  const closed = [Math.sqrt(1 / (4 * Math.PI)), Math.sqrt(3 / (4 * Math.PI)) * c, Math.sqrt(5 / (16 * Math.PI)) * (3 * c * c - 1)];
+  const closed = [
+    Math.sqrt(1 / (4 * Math.PI)),
+    Math.sqrt(3 / (4 * Math.PI)) * c,
+    Math.sqrt(5 / (16 * Math.PI)) * (3 * c * c - 1),
+  ];
   closed.forEach((value, l) => assert.ok(Math.abs(p[l] - value) < 1e-15));
   assert.ok(Math.abs(p[4] + Math.sqrt(3 / (8 * Math.PI)) * s) < 1e-15); // Y_11 is negative: Condon-Shortley
   let sum = 0; // of |P_3m|^2 over all m: (2 l + 1) / (4 pi), Unsoeld's theorem
