@@ -63,10 +63,6 @@ constexpr Unit units[] = {
     {Dimension::charge_density, "uC/m3", 1e-6},
     {Dimension::charge_density, "nC/m3", 1e-9},
     {Dimension::charge_density, "C/cm3", 1e6},
-    {Dimension::force, "N", 1},
-    {Dimension::force, "kN", 1e3},
-    {Dimension::force, "kgf", 9.80665},
-    {Dimension::force, "lbf", 0.45359237 * 9.80665},
 };
 
 std::string names(Dimension dimension) {

@@ -7,8 +7,6 @@ namespace cowgpu {
 
 /// What a quantity measures. Values are held in the SI unit: m, kg/m3, s, rad/s, kg, C/m3, N.
 enum class Dimension { length, density, time, angular_rate, mass, charge_density, force };
-/// What a quantity measures. Values are held in the SI unit: m, kg/m3, s, rad/s, kg, N, C/m3.
-enum class Dimension { length, density, time, angular_rate, mass, force, charge_density };
 
 /// Seconds.
 inline constexpr double julian_year = 365.25 * 86400;
@@ -25,8 +23,6 @@ struct Measure {
 /// of time: s ms min h d yr kyr Myr Gyr, a year being Julian, 365.25 days of 86400 s; of angular rate: rad/s deg/s rpm, and
 /// /s and Hz, which are both 1 rad/s; of mass: kg g t lb; of charge density: C/m3 mC/m3 uC/m3 nC/m3 C/cm3; of force: N kN
 /// kgf lbf.
-/// /s and Hz, which are both 1 rad/s; of mass: kg g t lb; of force: N kN kgf lbf;
-/// of charge density: C/m3 mC/m3 uC/m3 nC/m3 C/cm3.
 /// `option` opens the messages. Throws Error(bad_argument) with the units that there are.
 Measure parse_measure(std::string_view option, std::string_view text, Dimension dimension);
 

@@ -26,18 +26,13 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/spectrum", {"host", "host/mesh", "host/map", "host/plan", "host/reference"}},
     {"host/flow", {"host", "host/mesh", "host/map", "host/spectrum"}},
     {"host/physics", {"host", "host/mesh", "host/io", "host/spectrum", "host/reference"}},
-    {"host/report", {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics"}},
-    {"host/reproduce", {"host", "host/io", "host/spectrum", "host/physics", "host/report"}},
-    {"host/cli",
-     {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/report",
-      "host/plan", "host/reproduce"}},
-    {"host/physics", {"host", "host/mesh", "host/io", "host/spectrum"}},
     {"host/plot", {"host", "host/io"}},
     {"host/report",
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/plot"}},
+    {"host/reproduce", {"host", "host/io", "host/spectrum", "host/physics", "host/report"}},
     {"host/cli",
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/report",
-      "host/plan", "host/plot"}},
+      "host/plan", "host/plot", "host/reproduce"}},
 };
 
 struct Include {

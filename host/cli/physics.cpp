@@ -37,11 +37,6 @@ constexpr std::array applications = {
                 "Examples: cowgpu radiate benchmark --length 2.5m --density 1g/cm3 --axis y --omega 1rad/s\n"
                 "          cowgpu radiate benchmark --recipe paper",
                 add_radiate},
-    Application{"tip", "What tips a standing body over onto its side: the least force, and the least push that lasts",
-                "Examples: cowgpu tip benchmark --length 2.5m --density 1g/cm3 --friction 0.6 --push 5000N:0.1s\n"
-                "          cowgpu tip benchmark --of stretch --order 0..8 --json\n"
-                "          cowgpu tip benchmark --recipe paper",
-                add_tip},
     Application{
         "tides", "A body on a circular orbit: gravity-gradient torque, attitudes that last, librations, locking",
         "Examples: cowgpu tides benchmark --length 2.5m --density 1g/cm3 --orbit 6771km\n"

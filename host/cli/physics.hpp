@@ -88,7 +88,6 @@ Solve add_radiate(CLI::App& command, Common& common);
 Solve add_tides(CLI::App& command, Common& common);
 Solve add_drop(CLI::App& command, Common& common);
 Solve add_tip(CLI::App& command, Common& common);
-Solve add_tip(CLI::App& command, Common& common);
 Solve add_tides(CLI::App& command, Common& common);
 Solve add_drop(CLI::App& command, Common& common);
 
