@@ -25,8 +25,6 @@ std::string_view name(Fault fault) {
   case Fault::point_inside: return "point-inside";
   case Fault::point_singular: return "point-singular";
   case Fault::cannot_stand: return "cannot-stand";
-  case Fault::point_inside: return "point-inside";
-  case Fault::point_singular: return "point-singular";
   case Fault::too_large: return "too-large";
   case Fault::no_loader: return "no-loader";
   case Fault::no_device: return "no-device";

@@ -30,8 +30,6 @@ enum class Fault {
   point_inside,         ///< a place inside the sphere that holds a body, where its series is not its potential
   point_singular,       ///< a place where a field is infinite: on an edge of a polyhedron
   cannot_stand,         ///< a body that does not rest on what it touches the ground with
-  point_inside,         ///< a place inside the sphere that holds a body, where its series is not its potential
-  point_singular,       ///< a place where a field is infinite: on an edge of a polyhedron
   too_large,            ///< more memory than this machine has, or than a device offers
   no_loader,            ///< no Vulkan loader on this machine
   no_device,            ///< no Vulkan device, or none of that name

@@ -322,24 +322,6 @@ for arguments in (
         assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
 found["law"] = "levity"
 refuses(potential, found, "a law of no kind")
-tip = load_schema("tip")
-with tempfile.TemporaryDirectory() as folder:
-    surface, push = os.path.join(folder, "cow.json"), os.path.join(folder, "push.csv")
-    expand("builtin:cow@1", "--of", "smooth", "--lmax", "5", "--device", "cpu", "-o", surface)
-    with open(push, "w", encoding="utf-8") as file:
-        file.write("time,force\n0,0\n0.1,5000\n0.2,0\n")
-    for arguments in (
-        ["builtin:box:1,2,1"],
-        ["builtin:cow@1", "--length", "2.5m", "--density", "1g/cm3", "--friction", "0.6", "--push", push, "--punch-duration", "20ms"],
-        ["builtin:cow@1", "--length", "2.5m", "--order", "0..2,full", "--of", "smooth", "--as-modelled", "--contact-tolerance", "1cm"],
-        [surface, "--order", "0,3", "--fields", "f"],
-    ):
-        found = output_of("tip", *arguments, "--device", "cpu", "--json")
-        jsonschema.validate(found, tip)
-        assert found["orders"][-1]["order"] == "full" and found["orders"][-1]["force_N"] == found["force_N"]
-        assert ("push_tips" in found) is ("--push" in arguments) and ("boundary" in found) is ("--length" in arguments)
-    found["orders"][0]["side"] = "up"
-    refuses(tip, found, "a side that is none")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 reproduce = load_schema("reproduce")
 with tempfile.TemporaryDirectory() as folder:
