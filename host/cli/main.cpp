@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   cli::add_inflate(app, common);
   cli::add_distance(app, common);
   cli::add_streamlines(app, common);
+  cli::add_figure(app, common);
   cli::add_physics(app, common);
   cli::add_inspect(app, common);
   cli::add_meshes(app);
