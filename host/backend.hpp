@@ -130,8 +130,9 @@ public:
   virtual MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives) const = 0;
 
   /// The scene as a picture: smooth or flat shading, light from the upper left, the light of sky and ground where the
-  /// surroundings let it through, edges with 16 samples a pixel. The same scene gives the same picture on any number of
-  /// threads. Throws what check(scene) throws, Error(interrupted).
+  /// surroundings let it through, edges with 16 samples a pixel. Every path and any number of threads give the same
+  /// picture, bit by bit where the device's division of doubles is IEEE 754's (host/plan/render.hpp). Throws what
+  /// check(scene) throws, too_large, device_failed, device_lost, interrupted.
   virtual Image render(const RenderScene& scene, Monitor& monitor) = 0;
 
   /// Measured multiply-add peak of double precision, in flops per second (a multiply-add counts two).

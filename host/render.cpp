@@ -111,6 +111,9 @@ void check(const RenderScene& scene) {
       if (!surface.normals.empty() && surface.normals.size() != surface.vertices.size())
         throw Error(Fault::bad_argument, fmt::format("{} normals for {} vertices; there must be one each",
                                                      surface.normals.size(), surface.vertices.size()));
+      if (!surface.vertex_colours.empty() && surface.vertex_colours.size() != surface.vertices.size())
+        throw Error(Fault::bad_argument, fmt::format("{} colours for {} vertices; there must be one each",
+                                                     surface.vertex_colours.size(), surface.vertices.size()));
       for (std::size_t f = 0; f < surface.faces.size(); ++f)
         for (const std::uint32_t v : surface.faces[f]) {
           if (v >= surface.vertices.size())

@@ -33,8 +33,9 @@ std::string view_names();
 struct RenderSurface {
   std::span<const Vec3> vertices; ///< mesh coordinates
   std::span<const Face> faces;
-  std::span<const Vec3> normals;            ///< unit vectors, one per vertex: smooth shading; empty: flat
-  Colour colour = {0.555F, 0.435F, 0.315F}; ///< reflectance
+  std::span<const Vec3> normals;               ///< unit vectors, one per vertex: smooth shading; empty: flat
+  Colour colour = {0.555F, 0.435F, 0.315F};    ///< reflectance
+  std::span<const Colour> vertex_colours = {}; ///< one per vertex, in place of it: linear between; or empty
 };
 
 /// Surfaces in common coordinates, and the part of space that is shown.
@@ -66,7 +67,7 @@ inline constexpr int largest_picture = 16384;
 void fit(RenderPanel& panel, int width, int height, double margin = 0.05);
 
 /// Throws Error(bad_argument) for pictures of no size or sides beyond largest_picture, a view, centre or height that is
-/// not finite, normals of another number than the vertices; mesh_empty for a panel without faces; mesh_index_range;
+/// not finite, normals or colours of another number than the vertices; mesh_empty for a panel without faces; mesh_index_range;
 /// mesh_not_finite.
 void check(const RenderScene& scene);
 

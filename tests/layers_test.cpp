@@ -27,12 +27,14 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/flow", {"host", "host/mesh", "host/map", "host/spectrum"}},
     {"host/physics", {"host", "host/mesh", "host/io", "host/spectrum", "host/reference"}},
     {"host/plot", {"host", "host/io"}},
+    {"host/figures", {"host", "host/mesh", "host/map", "host/spectrum", "host/flow", "host/report", "host/plot"}},
     {"host/report",
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/plot"}},
     {"host/reproduce", {"host", "host/io", "host/spectrum", "host/physics", "host/report"}},
     {"host/cli",
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/report",
       "host/plan", "host/plot", "host/reproduce"}},
+      "host/plan", "host/plot", "host/figures"}},
 };
 
 struct Include {

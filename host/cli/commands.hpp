@@ -46,6 +46,7 @@ void add_inflate(CLI::App& app, Common& common);
 void add_distance(CLI::App& app, Common& common);
 void add_streamlines(CLI::App& app, Common& common);
 void add_reproduce(CLI::App& app, Common& common);
+void add_figure(CLI::App& app, Common& common);
 /// Adds the applications of the multipoles, host/cli/physics.cpp.
 void add_physics(CLI::App& app, Common& common);
 void add_errata(CLI::App& app, Common& common);

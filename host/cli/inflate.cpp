@@ -1,8 +1,9 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/drawing.hpp"
 #include "host/cli/expand_flow.hpp"
 #include "host/cli/mend_options.hpp"
-#include "host/cli/scene.hpp"
 #include "host/cli/surface_outputs.hpp"
+#include "host/figures/scene.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
@@ -165,7 +166,7 @@ void draw(const std::vector<Inflated>& bodies, const Options& options, Backend& 
   for (const Inflated& body : bodies) shown.push_back(body.surface);
   const View view = parse_view(options.view);
   const Image image =
-      backend.render(scene_of(shown, std::span(&view, 1), {options.width, options.height, 0, false}), monitor);
+      backend.render(figures::scene_of(shown, std::span(&view, 1), {options.width, options.height, 0, false}), monitor);
   write_png(image, file);
   check_stop(monitor);
   file.commit();
@@ -238,7 +239,8 @@ void run(const Options& options, const Common& common) {
     if (!bodies.back().output.empty() && !common.quiet) say(fmt::format("cowgpu: wrote {}\n", bodies.back().output));
   }
   if (picture) {
-    draw(bodies, options, *backend, monitor, *picture);
+    const auto cpu = faster_drawing(*backend, common);
+    draw(bodies, options, cpu ? *cpu : *backend, monitor, *picture);
     monitor.clear();
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.picture));
   }

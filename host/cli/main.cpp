@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   cli::add_inflate(app, common);
   cli::add_distance(app, common);
   cli::add_streamlines(app, common);
+  cli::add_figure(app, common);
   cli::add_physics(app, common);
   cli::add_reproduce(app, common);
   cli::add_errata(app, common);

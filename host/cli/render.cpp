@@ -1,7 +1,8 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/drawing.hpp"
 #include "host/cli/order_list.hpp"
-#include "host/cli/scene.hpp"
 #include "host/cli/surface_source.hpp"
+#include "host/figures/scene.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
@@ -89,11 +90,8 @@ void run(const Options& given, const Common& common) {
   refuse_same_file(options.source.input, options.output);
   AtomicFile file(options.output); // before long work: what cannot be written should fail now
 
-  // No Vulkan kernel draws so far: a device is opened only if it is asked for.
-  const auto backend = common.device == "auto" ? make_cpu_backend(common.threads) : open_backend(common, nullptr);
-  if (backend->facts().type != "cpu" && !common.quiet)
-    say(fmt::format("cowgpu: pictures are made on the CPU; {} is {}\n", backend->facts().name,
-                    rebuilt ? "used for transforms alone" : "not used"));
+  auto backend = open_backend(common, nullptr);
+  if (auto cpu = faster_drawing(*backend, common)) backend = std::move(cpu);
   ConsoleMonitor monitor(common.style());
   std::vector<TriangleSurface> shown = bodies(options, orders, *backend, monitor);
   std::size_t triangles = 0;
@@ -105,7 +103,7 @@ void run(const Options& given, const Common& common) {
       body.normals = vertex_normals(body.vertices, body.faces);
   }
   const RenderScene scene =
-      scene_of(shown, views, {options.width, options.height, options.columns, options.transparent});
+      figures::scene_of(shown, views, {options.width, options.height, options.columns, options.transparent});
   const auto start = Clock::now();
   const Image image = backend->render(scene, monitor);
   const double seconds = seconds_since(start);
@@ -114,8 +112,9 @@ void run(const Options& given, const Common& common) {
   check_stop(monitor);
   file.commit();
   if (!common.quiet)
-    say(fmt::format("cowgpu: wrote {}: {} x {} pixels, {} triangles, rendered in {:.2f} s on the CPU\n", options.output,
-                    image.width, image.height, triangles, seconds));
+    say(fmt::format("cowgpu: wrote {}: {} x {} pixels, {} triangles, rendered in {:.2f} s on {}\n", options.output,
+                    image.width, image.height, triangles, seconds,
+                    backend->facts().type == "cpu" ? "the CPU" : backend->facts().name));
 }
 
 } // namespace

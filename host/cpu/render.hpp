@@ -7,7 +7,8 @@
 
 namespace cowgpu::cpu {
 
-/// Backend::render() on `threads` threads (0: all). Memory beside the image: 400 bytes a face of the largest panel.
+/// Backend::render() on `threads` threads (0: all). Memory beside the image: 450 bytes a face of the largest panel, and up to
+/// 100 MB a thread for rays.
 Image render(const RenderScene& scene, unsigned threads, Monitor& monitor);
 
 } // namespace cowgpu::cpu

@@ -10,6 +10,7 @@
 #include "host/gpu/flow.hpp"
 #include "host/gpu/moments.hpp"
 #include "host/gpu/potential.hpp"
+#include "host/gpu/render.hpp"
 #include "host/gpu/sample.hpp"
 #include "host/gpu/sphere_transform.hpp"
 
@@ -91,7 +92,7 @@ public:
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {
-    return make_cpu_backend()->render(scene, monitor); // no kernel of its own so far
+    return gpu::translated([&] { return gpu::render(*gpu_, iteration_budget_, scene, monitor); });
   }
 
   double measured_peak() override {

@@ -160,6 +160,8 @@ Canvas::Canvas(PictureFormat format, double width, double height, double scale) 
 }
 
 Canvas::~Canvas() = default;
+Canvas::Canvas(Canvas&&) noexcept = default;
+Canvas& Canvas::operator=(Canvas&&) noexcept = default;
 
 double Canvas::width() const {
   return page_->width;

@@ -72,8 +72,8 @@ public:
   /// pixels, too_large where there is no memory.
   Canvas(PictureFormat format, double width, double height, double scale = 3);
   ~Canvas();
-  Canvas(const Canvas&) = delete;
-  Canvas& operator=(const Canvas&) = delete;
+  Canvas(Canvas&&) noexcept;
+  Canvas& operator=(Canvas&&) noexcept;
 
   double width() const;
   double height() const;

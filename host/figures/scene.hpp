@@ -1,4 +1,4 @@
-// Bodies side by side, for the commands that draw.
+// Bodies side by side, all to one scale.
 #pragma once
 
 #include "host/mesh/triangle_surface.hpp"
@@ -6,7 +6,7 @@
 
 #include <span>
 
-namespace cowgpu::cli {
+namespace cowgpu::figures {
 
 struct SceneOptions {
   int width = 1600, height = 1200; ///< pixels of a panel
@@ -18,4 +18,4 @@ struct SceneOptions {
 /// scene are the bodies'.
 RenderScene scene_of(std::span<const TriangleSurface> bodies, std::span<const View> views, const SceneOptions& options);
 
-} // namespace cowgpu::cli
+} // namespace cowgpu::figures

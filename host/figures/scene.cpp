@@ -1,9 +1,9 @@
-#include "host/cli/scene.hpp"
+#include "host/figures/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace cowgpu::cli {
+namespace cowgpu::figures {
 
 RenderScene scene_of(std::span<const TriangleSurface> bodies, std::span<const View> views,
                      const SceneOptions& options) {
@@ -32,4 +32,4 @@ RenderScene scene_of(std::span<const TriangleSurface> bodies, std::span<const Vi
   return scene;
 }
 
-} // namespace cowgpu::cli
+} // namespace cowgpu::figures

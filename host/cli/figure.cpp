@@ -1,0 +1,166 @@
+#include "host/cli/commands.hpp"
+#include "host/cli/drawing.hpp"
+#include "host/cli/expand_surfaces.hpp"
+#include "host/cli/surface_source.hpp"
+
+#include "host/error.hpp"
+#include "host/figures/figures.hpp"
+#include "host/io/mesh_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace cowgpu::cli {
+namespace {
+
+struct Options {
+  std::string name, mesh = "builtin:cow", output, of, recipe = "default", view = "28,14", plane = "yz";
+  int lmax = default_lmax;
+  std::size_t lines = 240;
+};
+
+struct Figure {
+  const char* name;
+  const char* of;   ///< the maps it shows unless told otherwise; "": none
+  bool lines_alone; ///< and so as SVG, too
+};
+
+constexpr Figure figures_known[] = {{"spectra", "all", true},         {"orders", "stretch", false},
+                                    {"components", "stretch", false}, {"definition", "stretch", true},
+                                    {"inflation", "", false},         {"streamlines", "", true}};
+
+std::string map_title(const std::string& name) {
+  if (name == "flow") return "gradient flow";
+  return name + " map";
+}
+
+/// What a figure is made from.
+class Making {
+public:
+  Making(const Options& options, const Figure& figure, const Common& common)
+      : options_(options), figure_(figure), backend_(open_backend(common, nullptr)), monitor_(common.style()),
+        body_(make_body(ClosedSurface::from(load_mesh(options.mesh)), {}, 1)) {
+    if (auto cpu = faster_drawing(*backend_, common)) backend_ = std::move(cpu);
+  }
+
+  plot::Canvas draw(plot::PictureFormat format) {
+    const std::string name = figure_.name;
+    const RawMesh& mesh = body_.surface.mesh();
+    const View view = parse_view(options_.view);
+    if (name == "inflation") return figures::inflation_figure(mesh, view, *backend_, monitor_);
+    if (name == "streamlines")
+      return figures::streamlines_figure(format, mesh, parse_plane(options_.plane), body_.origin, options_.lines,
+                                         *backend_, monitor_);
+    const ExpansionChoice choice =
+        parse_expansions(options_.of.empty() ? figure_.of : options_.of, options_.recipe, "", options_.lmax);
+    const std::vector<SurfaceResult> results = expand_surfaces(choice, false, body_, *backend_, monitor_);
+    if (name == "spectra") return spectra(format, choice, results);
+    if (results.size() != 1 || choice.mass)
+      throw Error(
+          Fault::bad_argument,
+          fmt::format("--of {}: the figure '{}' is of one map: harmonic, stretch, smooth or flow", options_.of, name));
+    const SurfaceResult& result = results[0];
+    const std::string title = fmt::format("{}, {}", mesh.name, map_title(result.name));
+    if (name == "orders")
+      return figures::orders_figure(result.expansion, SurfaceFields::xyz, mesh, view, title, *backend_, monitor_);
+    if (name == "components")
+      return figures::components_figure(mesh, result.map, result.expansion.origin, view, title, *backend_, monitor_);
+    return figures::definition_figure(format, mesh, result.map, result.expansion.origin);
+  }
+
+  ConsoleMonitor& monitor() { return monitor_; }
+
+private:
+  plot::Canvas spectra(plot::PictureFormat format, const ExpansionChoice& choice,
+                       const std::vector<SurfaceResult>& results) {
+    std::vector<figures::NamedExpansion> named;
+    for (const SurfaceResult& result : results) named.push_back({map_title(result.name), &result.expansion});
+    Coefficients mass;
+    if (choice.mass) {
+      MomentProblem problem;
+      problem.vertices = body_.surface.vertices();
+      problem.faces = body_.surface.faces();
+      problem.origin = body_.origin;
+      problem.reference_radius = body_.brillouin_radius;
+      problem.lmax = options_.lmax;
+      mass = backend_->moments(problem, monitor_);
+    }
+    return figures::spectra_figure(format, named, choice.mass ? &mass : nullptr);
+  }
+
+  const Options& options_;
+  const Figure& figure_;
+  std::unique_ptr<Backend> backend_;
+  ConsoleMonitor monitor_;
+  Body body_;
+};
+
+void run(const Options& options, const Common& common) {
+  const Figure& figure = *std::find_if(std::begin(figures_known), std::end(figures_known),
+                                       [&](const Figure& f) { return f.name == options.name; });
+  const plot::PictureFormat format = plot::picture_format(options.output);
+  if (format == plot::PictureFormat::svg && !figure.lines_alone)
+    throw Error(Fault::bad_argument,
+                fmt::format("-o {}: the figure '{}' shows surfaces, which are pixels: the name must "
+                            "end in .png",
+                            options.output, options.name));
+  parse_view(options.view);
+  parse_plane(options.plane);
+  refuse_same_file(options.mesh, options.output);
+  AtomicFile file(options.output);
+  Making making(options, figure, common);
+  plot::Canvas canvas = making.draw(format);
+  making.monitor().clear();
+  canvas.write(file);
+  check_stop(making.monitor());
+  file.commit();
+  if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
+}
+
+} // namespace
+
+void add_figure(CLI::App& app, Common& common) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("figure", "One of the paper's figures, or one it lacks, of any body");
+  std::vector<std::string> names;
+  for (const Figure& figure : figures_known) names.emplace_back(figure.name);
+  command
+      ->add_option("name", options->name,
+                   "spectra: power by degree. orders: orders 0 to 7 and the body. components: f on the body and on the "
+                   "sphere. definition: what f is. inflation: level sets of the distance. streamlines: of its flow")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(names))
+      ->required();
+  command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  command->add_option("-o,--output", options->output, "The page: FILE.png or, of lines alone, FILE.svg")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--of", options->of,
+                   "The map (stretch): harmonic, stretch, smooth or flow; for spectra a list, mass among it (all)")
+      ->type_name("NAME");
+  command->add_option("--recipe", options->recipe, "paper: harmonic map and flow as the paper made them")
+      ->check(CLI::IsMember({"default", "paper"}))
+      ->capture_default_str();
+  command->add_option("--lmax", options->lmax, "Degree of the expansions")
+      ->check(CLI::Range(8, largest_surface_degree))
+      ->type_name("L")
+      ->capture_default_str();
+  command->add_option("--view", options->view, "Of surfaces: " + view_names() + ", or AZ,EL in degrees")
+      ->type_name("VIEW")
+      ->capture_default_str();
+  command->add_option("--plane", options->plane, "Of streamlines: yz, xy or xz, or NX,NY,NZ,D")
+      ->type_name("PLANE")
+      ->capture_default_str();
+  command->add_option("--count", options->lines, "Streamlines")
+      ->check(CLI::Range(std::size_t(1), std::size_t(100'000)))
+      ->type_name("N")
+      ->capture_default_str();
+  add_common_options(*command, common);
+  command->footer("Examples: cowgpu figure orders benchmark --of harmonic --recipe paper -o harmonic.png\n"
+                  "          cowgpu figure spectra benchmark -o spectra.svg");
+  command->callback([options, &common] { run(*options, common); });
+}
+
+} // namespace cowgpu::cli
