@@ -31,17 +31,13 @@ const headOf = new Set(["schema", "program", "command", "created", "input", "not
 const isTable = (value) => value && typeof value === "object" && Array.isArray(value.columns) && Array.isArray(value.rows);
 const isMatrix = (value) => Array.isArray(value) && value.length > 0 && value.every(Array.isArray);
 
-function matrix(rows) {
+function matrix(rows, label) {
+  const cell = (value) => el("td", {}, typeof value === "number" ? number(value) : valueText(value));
+  const body = el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map(cell))));
   return el(
-    "table",
-    { class: "matrix" },
-    el(
-      "tbody",
-      {},
-      ...rows.map((row) =>
-        el("tr", {}, ...row.map((value) => el("td", {}, typeof value === "number" ? number(value) : valueText(value)))),
-      ),
-    ),
+    "div",
+    { class: "wide", tabindex: "0", role: "group", "aria-label": label },
+    el("table", { class: "matrix" }, body),
   );
 }
 
@@ -111,7 +107,7 @@ export function findings(document) {
         el(
           "dd",
           {},
-          isMatrix(value) ? matrix(value) : valueText(value),
+          isMatrix(value) ? matrix(value, words(key)) : valueText(value),
           unit ? el("span", { class: "unit" }, ` ${unit}`) : null,
         ),
       ),

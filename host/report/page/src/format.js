@@ -48,11 +48,26 @@ export const thousands = (value) =>
   typeof value === "number" && Number.isFinite(value) ? String(value).replace(/\B(?=(\d{3})+$)/g, "\u202f") : notKnown;
 
 export const components = {
-  f_r: { label: "f_r, distance from the origin", short: "f_r", unit: "length" },
-  f_dtheta: { label: "f_d\u03b8, angle from the pole, of body less sphere", short: "f_d\u03b8", unit: "angle" },
-  f_dphi: { label: "f_d\u03c6, longitude, of body less sphere", short: "f_d\u03c6", unit: "angle" },
-  x: { label: "x", short: "x", unit: "length" },
-  y: { label: "y", short: "y", unit: "length" },
-  z: { label: "z", short: "z", unit: "length" },
-  distance: { label: "distance to the true mesh", short: "distance to the mesh", unit: "length" },
+  f_r: { option: "f_r: distance", label: "f_r, distance from the origin", short: "f_r", unit: "length" },
+  f_dtheta: {
+    option: "f_d\u03b8: polar angle",
+    label: "f_d\u03b8, angle from the pole, of body less sphere",
+    short: "f_d\u03b8",
+    unit: "angle",
+  },
+  f_dphi: {
+    option: "f_d\u03c6: longitude",
+    label: "f_d\u03c6, longitude, of body less sphere",
+    short: "f_d\u03c6",
+    unit: "angle",
+  },
+  x: { option: "x", label: "x", short: "x", unit: "length" },
+  y: { option: "y", label: "y", short: "y", unit: "length" },
+  z: { option: "z", label: "z", short: "z", unit: "length" },
+  distance: {
+    option: "distance to the mesh",
+    label: "distance to the true mesh",
+    short: "distance to the mesh",
+    unit: "length",
+  },
 };

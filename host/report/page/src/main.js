@@ -233,7 +233,7 @@ function chooseComponents() {
   if (!there.includes(state.component)) state.component = "f_r";
   options(
     $("component"),
-    there.map((name) => [name, components[name].label]),
+    there.map((name) => [name, components[name].option]),
     state.component,
   );
 }
