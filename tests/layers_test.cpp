@@ -33,8 +33,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/reproduce", {"host", "host/io", "host/spectrum", "host/physics", "host/report"}},
     {"host/cli",
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/report",
-      "host/plan", "host/plot", "host/reproduce"}},
-      "host/plan", "host/plot", "host/figures"}},
+      "host/plan", "host/plot", "host/figures", "host/reproduce"}},
 };
 
 struct Include {
