@@ -2,6 +2,7 @@
 #include "host/cli/drawing.hpp"
 #include "host/cli/expand_surfaces.hpp"
 #include "host/cli/surface_source.hpp"
+#include "host/cli/tip_input.hpp"
 
 #include "host/error.hpp"
 #include "host/figures/figures.hpp"
@@ -10,12 +11,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace cowgpu::cli {
 namespace {
 
 struct Options {
   std::string name, mesh = "builtin:cow", output, of, recipe = "default", view = "28,14", plane = "yz";
+  std::vector<std::string> results;
   int lmax = default_lmax;
   std::size_t lines = 240;
 };
@@ -26,9 +29,10 @@ struct Figure {
   bool lines_alone; ///< and so as SVG, too
 };
 
-constexpr Figure figures_known[] = {{"spectra", "all", true},         {"orders", "stretch", false},
-                                    {"components", "stretch", false}, {"definition", "stretch", true},
-                                    {"inflation", "", false},         {"streamlines", "", true}};
+constexpr Figure figures_known[] = {
+    {"spectra", "all", true},        {"orders", "stretch", false}, {"components", "stretch", false},
+    {"definition", "stretch", true}, {"inflation", "", false},     {"streamlines", "", true},
+    {"tipping", "", false}};
 
 std::string map_title(const std::string& name) {
   if (name == "flow") return "gradient flow";
@@ -52,6 +56,8 @@ public:
     if (name == "streamlines")
       return figures::streamlines_figure(format, mesh, parse_plane(options_.plane), body_.origin, options_.lines,
                                          *backend_, monitor_);
+    if (name == "tipping") return tipping();
+    if (!options_.results.empty()) return of_results(format);
     const ExpansionChoice choice =
         parse_expansions(options_.of.empty() ? figure_.of : options_.of, options_.recipe, "", options_.lmax);
     const std::vector<SurfaceResult> results = expand_surfaces(choice, false, body_, *backend_, monitor_);
@@ -72,20 +78,51 @@ public:
   ConsoleMonitor& monitor() { return monitor_; }
 
 private:
+  // Of expansions that are in files, with the mass of the mesh beside them.
+  plot::Canvas of_results(plot::PictureFormat format) {
+    std::vector<SurfaceSource> sources;
+    for (const std::string& file : options_.results) {
+      SurfaceChoice choice;
+      choice.input = file;
+      sources.push_back(load_surface(choice, 0, *backend_, monitor_));
+    }
+    if (options_.name == std::string("orders"))
+      return figures::orders_figure(
+          sources[0].expansion, SurfaceFields::xyz, body_.surface.mesh(), parse_view(options_.view),
+          fmt::format("{}, {}", body_.surface.mesh().name, map_title(sources[0].name)), *backend_, monitor_);
+    std::vector<figures::NamedExpansion> named;
+    for (const SurfaceSource& source : sources) named.push_back({map_title(source.name), &source.expansion});
+    const Coefficients mass = mass_moments();
+    return figures::spectra_figure(format, named, &mass);
+  }
+
+  // A ball of the body's volume on the left, the body on the right.
+  plot::Canvas tipping() {
+    using namespace physics;
+    const TipBody cow = tip_body(body_);
+    const Stance stance = stand(cow, {}), ball = stand(ball_like(cow, body_.mass()), {.as_modelled = true});
+    const Tipping of_cow = physics::tipping(stance, Side::right), of_ball = physics::tipping(ball, Side::right);
+    const std::array shown = {figures::TippedBody{&ball, &of_ball, "spherical body"},
+                              figures::TippedBody{&stance, &of_cow, body_.surface.mesh().name}};
+    return figures::tipping_figure(shown, *backend_, monitor_);
+  }
+
+  Coefficients mass_moments() {
+    MomentProblem problem;
+    problem.vertices = body_.surface.vertices();
+    problem.faces = body_.surface.faces();
+    problem.origin = body_.origin;
+    problem.reference_radius = body_.brillouin_radius;
+    problem.lmax = options_.lmax;
+    return backend_->moments(problem, monitor_);
+  }
+
   plot::Canvas spectra(plot::PictureFormat format, const ExpansionChoice& choice,
                        const std::vector<SurfaceResult>& results) {
     std::vector<figures::NamedExpansion> named;
     for (const SurfaceResult& result : results) named.push_back({map_title(result.name), &result.expansion});
     Coefficients mass;
-    if (choice.mass) {
-      MomentProblem problem;
-      problem.vertices = body_.surface.vertices();
-      problem.faces = body_.surface.faces();
-      problem.origin = body_.origin;
-      problem.reference_radius = body_.brillouin_radius;
-      problem.lmax = options_.lmax;
-      mass = backend_->moments(problem, monitor_);
-    }
+    if (choice.mass) mass = mass_moments();
     return figures::spectra_figure(format, named, choice.mass ? &mass : nullptr);
   }
 
@@ -108,6 +145,12 @@ void run(const Options& options, const Common& common) {
   parse_view(options.view);
   parse_plane(options.plane);
   refuse_same_file(options.mesh, options.output);
+  for (const std::string& file : options.results) refuse_same_file(file, options.output);
+  const bool orders = options.name == "orders", takes_results = orders || options.name == "spectra";
+  if (!options.results.empty() && (!takes_results || !options.of.empty() || (orders && options.results.size() > 1)))
+    throw Error(Fault::bad_argument,
+                "--result: the figures 'orders' (one file) and 'spectra' are made of results, and then "
+                "--of says nothing");
   AtomicFile file(options.output);
   Making making(options, figure, common);
   plot::Canvas canvas = making.draw(format);
@@ -128,7 +171,8 @@ void add_figure(CLI::App& app, Common& common) {
   command
       ->add_option("name", options->name,
                    "spectra: power by degree. orders: orders 0 to 7 and the body. components: f on the body and on the "
-                   "sphere. definition: what f is. inflation: level sets of the distance. streamlines: of its flow")
+                   "sphere. definition: what f is. inflation: level sets of the distance. streamlines: of its flow. "
+                   "tipping: a ball and the body, and what tips them")
       ->type_name("NAME")
       ->check(CLI::IsMember(names))
       ->required();
@@ -140,6 +184,11 @@ void add_figure(CLI::App& app, Common& common) {
       ->add_option("--of", options->of,
                    "The map (stretch): harmonic, stretch, smooth or flow; for spectra a list, mass among it (all)")
       ->type_name("NAME");
+  command
+      ->add_option("--result", options->results,
+                   "Of orders and spectra: expansions from result files (FILE.json) of the mesh; can be repeated")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
   command->add_option("--recipe", options->recipe, "paper: harmonic map and flow as the paper made them")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();

@@ -30,7 +30,8 @@ struct Options {
   PlaceOptions places;
   int lmax = -1, derivatives = 2;
   bool exact = false, charge = false, errors = false;
-  std::string inside = "refuse", output, distances = "1,1.1,1.5,2,3,5,10", plot;
+  std::string inside = "refuse", output, distances = "1,1.1,1.5,2,3,5,10";
+  std::vector<std::string> plots;
   std::vector<std::string> orders = {"0,1,2,4,8,16,32"};
 };
 
@@ -215,7 +216,7 @@ void check_options(const PhysicsOptions& common, const Options& options) {
   const bool file = is_coefficient_file(common.body.mesh);
   if (options.errors && (options.places.any() || options.exact || !options.output.empty()))
     refuse("--errors has places of its own: leave --at, --sphere, --plane, --exact and -o out");
-  if (!options.errors && !options.plot.empty()) refuse("--plot draws the errors of --errors");
+  if (!options.errors && !options.plots.empty()) refuse("--plot draws the errors of --errors");
   if (options.output == "-") refuse("-o -: the standard output has the report; name a file");
   if (file && (options.errors || options.exact || options.inside == "exact"))
     throw Error(Fault::file_format, fmt::format("{} takes the exact polyhedron, and {} holds multipoles: take the mesh",
@@ -224,12 +225,13 @@ void check_options(const PhysicsOptions& common, const Options& options) {
                                                                 : "--inside exact",
                                                 common.body.mesh));
   if (!options.output.empty()) file_format(options.output);
-  if (!options.plot.empty()) plot::picture_format(options.plot);
-  for (const std::string& output : {options.output, options.plot})
-    if (!output.empty()) {
-      for (const std::string& name : input_files(common.body)) refuse_same_file(name, output);
-      refuse_same_file(options.places.at, output);
-    }
+  for (const std::string& picture : options.plots) plot::picture_format(picture);
+  std::vector<std::string> outputs = options.plots;
+  if (!options.output.empty()) outputs.push_back(options.output);
+  for (const std::string& output : outputs) {
+    for (const std::string& name : input_files(common.body)) refuse_same_file(name, output);
+    refuse_same_file(options.places.at, output);
+  }
 }
 
 void add_errors(const SeriesErrors& errors, Findings& found) {
@@ -278,9 +280,9 @@ Findings solve_errors(const PhysicsInput& input, const PhysicsOptions& common, c
       {"brillouin_radius", "Brillouin radius", input.body->brillouin_radius,
        std::string(input.body->placement.metric ? "m" : mesh_length_unit)}};
   add_errors(errors, found);
-  if (!options.plot.empty())
+  for (const std::string& picture : options.plots)
     plot::write_plot(series_errors_plot(errors, fmt::format("How good the multipoles of {} are", found.input_name)),
-                     options.plot);
+                     picture);
   return found;
 }
 
@@ -436,7 +438,9 @@ Solve add_potential(CLI::App& command, Common& common) {
   command.add_option("--distances", options->distances, "Of --errors, in radii of the sphere that holds the body")
       ->capture_default_str()
       ->type_name("LIST");
-  command.add_option("--plot", options->plot, "Of --errors, a picture: FILE.png or FILE.svg")->type_name("FILE");
+  command.add_option("--plot", options->plots, "Of --errors, a picture: FILE.png or FILE.svg; can be repeated")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
   command.add_option("-o,--output", options->output, "Point by point: FILE.csv or FILE.nc")->type_name("FILE");
   add_common_options(command, common);
   return [options, &common](const PhysicsOptions& typed) { return solve(typed, *options, common); };

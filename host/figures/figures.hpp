@@ -7,6 +7,7 @@
 #include "host/flow/streamlines.hpp"
 #include "host/map/sphere_map.hpp"
 #include "host/mesh/raw_mesh.hpp"
+#include "host/physics/tip.hpp"
 #include "host/plot/canvas.hpp"
 #include "host/spectrum/reconstruct.hpp"
 
@@ -64,6 +65,18 @@ plot::Canvas inflation_figure(const RawMesh& mesh, const View& view, Backend& ba
 plot::Canvas streamlines_figure(plot::PictureFormat format, const RawMesh& mesh, const Plane& plane, const Vec3& origin,
                                 std::size_t lines, Backend& backend, Monitor& monitor,
                                 const std::string& unit = mesh_unit);
+
+/// A body on the ground and what begins to tip it.
+struct TippedBody {
+  const physics::Stance* stance = nullptr;
+  const physics::Tipping* tipping = nullptr;
+  std::string title;
+};
+
+/// The geometry of tipping, one panel a body, each of its own scale, seen from the front: x comes out of the page, z points to
+/// its left. The push F_T at p_T, at right angles to the ray q from the pivot p through the barycentre b, and the ground's force
+/// F_N at p; arrows say where forces act and where to, not how large they are. PNG. Throws what Backend::render throws.
+plot::Canvas tipping_figure(std::span<const TippedBody> bodies, Backend& backend, Monitor& monitor);
 
 /// A place in a plane: along Plane::u() and Plane::v().
 struct PlanePoint {
