@@ -1,9 +1,9 @@
 // Fields on a grid from their coefficients: f = sum over l, m of a_lm Y_lm, Y_lm orthonormal with the Condon-Shortley phase.
 import { index } from "./data.js";
 
-/// Orthonormal associated Legendre functions P_lm(cos theta) e^0 to degree `order`, sorted by m, then l: the standard
-/// recursion in l (Holmes and Featherstone, J. Geodesy 76 (2002) 279). sin^m theta is at least 1e-300 to order 128 on the
-/// grids here, or 0 matters nothing.
+/// Orthonormal associated Legendre functions with the Condon-Shortley phase to degree `order`, sorted by m, then l, by the
+/// standard recursion in l (Holmes and Featherstone, J. Geodesy 76 (2002) 279). To order 128, on the grids here, sin^m theta
+/// is 1e-245 or more off the poles: nothing underflows.
 export function legendre(order, theta, out = new Float64Array(((order + 1) * (order + 2)) / 2)) {
   const x = Math.cos(theta);
   const s = Math.sin(theta);
