@@ -8,6 +8,7 @@
 #include "host/io/mesh_source.hpp"
 #include "host/io/sha256.hpp"
 #include "host/report/json_parts.hpp"
+#include "host/report/page.hpp"
 #include "host/reproduce/report.hpp"
 #include "host/reproduce/tables.hpp"
 
@@ -126,6 +127,17 @@ void write_whole(const fs::path& file, const std::string& text) {
   out.commit();
 }
 
+// Whether the page of reports was built, by node and npm.
+bool have_page() {
+  try {
+    (void)read_page();
+    return true;
+  } catch (const Error& error) {
+    say(fmt::format("cowgpu: no report.html will be made: {}\n", error.what()));
+    return false;
+  }
+}
+
 void keep_only(const std::vector<std::string>& wanted, std::vector<Stage>& stages) {
   std::string there;
   for (const Stage& stage : stages) there += (there.empty() ? "" : ", ") + stage.name;
@@ -164,7 +176,7 @@ void reproduce_all(const Options& options, Common& common) {
   make_folder(folder / "data");
   make_folder(folder / "figures");
   const Lock lock(folder / "data" / ".lock");
-  Plan plan = reproduce::plan(all.mesh, all.papers_mesh, common.device);
+  Plan plan = reproduce::plan(all.mesh, all.papers_mesh, common.device, have_page());
   if (!options.only.empty()) keep_only(options.only, plan.stages);
   State state(folder);
   ConsoleMonitor monitor(common.style());

@@ -104,7 +104,7 @@ std::vector<Drawing> drawings(const std::string& mesh, const Words& recipe) {
 
 } // namespace
 
-Plan plan(const std::string& mesh, bool papers_mesh, const std::string& device) {
+Plan plan(const std::string& mesh, bool papers_mesh, const std::string& device, bool page) {
   const Words on = {"--device", device};
   const Words recipe = papers_mesh ? Words{"--recipe", "paper"} : Words{};
   const Words body = {"--recipe", "paper", "--json"};
@@ -178,6 +178,17 @@ Plan plan(const std::string& mesh, bool papers_mesh, const std::string& device) 
       {"figures/potential_error.png", "How good the spherical cow is, and where",
        "The largest error of the potential (and of the acceleration) of each order on spheres about the "
        "centre of mass, against the exact polyhedron. The paper has none."});
+  if (page)
+    plan.stages.push_back(
+        {"report",
+         "the page report.html",
+         Words{"report", "data/stretch.json", "--mesh", mesh, "--physics", "data/tensors.json", "--physics",
+               "data/radiate.json", "--physics", "data/tides.json", "--physics", "data/drop.json", "--physics",
+               "data/tip.json", "--physics", "data/potential.json", "-o", "report.html"} +
+             on,
+         "data/report.txt",
+         {"report.html"},
+         5});
   return plan;
 }
 

@@ -28,8 +28,8 @@ struct Plan {
   std::vector<Figure> figures;
 };
 
-/// For the paper's mesh, or another that stands in for it; `device` as --device has it.
-Plan plan(const std::string& mesh, bool papers_mesh, const std::string& device);
+/// For the paper's mesh, or another that stands in for it; `device` as --device has it; with `page` also the report, report.html.
+Plan plan(const std::string& mesh, bool papers_mesh, const std::string& device, bool page);
 
 /// What is left of a stage that ran: nothing is run twice whose key and files are as they were.
 struct Done {
