@@ -43,6 +43,7 @@ TEST_CASE("threshold and smallest impulse of a box in closed form", "[push]") {
   const Rocker box = box_rocker();
   CHECK(box.threshold() == Approx(60 * g * 0.4 / (2 * std::hypot(0.4, 1.0))).epsilon(1e-14));
   const double energy = 60 * g * (std::hypot(0.4, 1.0) - 1);
+  CHECK(box.least_energy() == Approx(energy).epsilon(1e-13));
   CHECK(box.least_impulse() == Approx(std::sqrt(2 * box.inertia * energy) / box.lever).epsilon(1e-13));
   CHECK(square_pulse(300, 0.5).impulse() == 150);
   CHECK(Profile{{0, 1, 1, 3}, {0, 2, 5, 1}}.impulse() == 7);

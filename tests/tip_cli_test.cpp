@@ -171,6 +171,18 @@ TEST_CASE("kilograms of a body whose density nobody stated come with a note", "[
   CHECK_FALSE(noted(commands.front()));
 }
 
+TEST_CASE("tip with a hole is that of the solid surface, and a note says so", "[tip][cli]") {
+  const TemporaryFolder folder;
+  const std::string hole = written(folder, "hole.off", // below the crate
+                                   "OFF\n4 4 0\n0 -2 0\n0.1 -1.9 0\n0 -1.9 0.1\n-0.1 -1.9 -0.1\n"
+                                   "3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n");
+  const json found = answer(with(crate, {"--part", hole + "=-1"})), plain = answer(crate);
+  CHECK(found["pivot"][1] == plain["pivot"][1]);
+  CHECK(found["support_points"] == 4);
+  CHECK(found["mass_kg"].get<double>() < plain["mass_kg"].get<double>());
+  CHECK_THAT(found["notes"].dump(), Contains("holes"));
+}
+
 TEST_CASE("tip at an order is stopped by an interrupt while it expands the surface", "[tip][cli]") {
   ProgramOptions options;
   options.interrupt_after = 0.5;

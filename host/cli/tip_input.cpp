@@ -187,6 +187,9 @@ void from_mesh(const PhysicsOptions& options, const TipChoice& choice, TipInput&
   const Body& body = *loaded.body;
   input.full = tip_body(body);
   input.full_is = "the mesh";
+  if (std::any_of(body.parts.begin(), body.parts.end(), [](const Part& part) { return part.density < 0; }))
+    input.head.notes.push_back(
+        "parts of negative density are holes: the body neither stands on them nor is pushed at them");
   input.metric = body.placement.metric;
   input.unit = body.placement.scale;
   if (input.orders.empty()) return;

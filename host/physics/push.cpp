@@ -221,8 +221,12 @@ double Rocker::threshold() const {
   return mass * gravity * radius * std::sin(balance) / lever;
 }
 
+double Rocker::least_energy() const {
+  return mass * gravity * radius * lifted(balance, balance);
+}
+
 double Rocker::least_impulse() const {
-  return std::sqrt(2 * inertia * mass * gravity * radius * lifted(balance, balance)) / lever;
+  return std::sqrt(2 * inertia * least_energy()) / lever;
 }
 
 double Rocker::least_duration(double force, const Monitor& monitor) const {

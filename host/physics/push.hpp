@@ -27,7 +27,9 @@ struct Rocker {
 
   /// m g r sin(alpha)/L: a push below never lifts it, one above that lasts always tips it.
   double threshold() const;
-  /// Of a push too short to move it while it lasts: J L = I omega and I omega^2/2 = m g r (1 - cos alpha).
+  /// m g r (1 - cos alpha), of the lift to the balance, in J.
+  double least_energy() const;
+  /// Of a push too short to move it while it lasts: J L = I omega and I omega^2/2 = least_energy().
   double least_impulse() const;
   /// How long a constant push must last; infinite up to the threshold. It ends at the tilt theta_1 whose work is what is
   /// needed in all, F L theta_1 (or sin theta_1) = m g r (1 - cos alpha), and the time there is the integral of
