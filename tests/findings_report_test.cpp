@@ -53,6 +53,23 @@ TEST_CASE("a table of entries is a list of objects, with columns that the screen
                 "   full    1234.57\n");
 }
 
+TEST_CASE("a value that there is none of has no unit on the screen, and is null in JSON", "[physics]") {
+  Findings found;
+  found.title = "a body";
+  found.rows = {
+      {"mass_kg", "mass", {}, "kg"}, {"lift_s", "lifts off after", {}, "s", "never"}, {"g", "gravity", 9.5, "m"}};
+  std::string text;
+  write_findings(found, [&](std::string_view part) { text += part; });
+  CHECK(text == "a body\n"
+                "  mass                                   not known\n"
+                "  lifts off after                        never\n"
+                "  gravity                                9.5 m\n");
+  const auto document = nlohmann::json(findings_json(found, "cowgpu.tip.v1", {"cowgpu", "tip"}));
+  CHECK(document["mass_kg"].is_null());
+  CHECK(document["lift_s"].is_null());
+  CHECK(document["units"]["lift_s"] == "s");
+}
+
 TEST_CASE("remarks in a table's last column begin at one place", "[physics]") {
   Findings found = with_table();
   found.tables[0].rows[0][2] = std::string("a remark that is long");

@@ -43,6 +43,7 @@ TEST_CASE("threshold and smallest impulse of a box in closed form", "[push]") {
   const Rocker box = box_rocker();
   CHECK(box.threshold() == Approx(60 * g * 0.4 / (2 * std::hypot(0.4, 1.0))).epsilon(1e-14));
   const double energy = 60 * g * (std::hypot(0.4, 1.0) - 1);
+  CHECK(box.least_energy() == Approx(energy).epsilon(1e-13));
   CHECK(box.least_impulse() == Approx(std::sqrt(2 * box.inertia * energy) / box.lever).epsilon(1e-13));
   CHECK(square_pulse(300, 0.5).impulse() == 150);
   CHECK(Profile{{0, 1, 1, 3}, {0, 2, 5, 1}}.impulse() == 7);
@@ -176,6 +177,46 @@ TEST_CASE("the friction that a push takes: the static one below the threshold, a
   CHECK(std::isinf(push(low, blow(low, 0.5)).friction_needed));
 }
 
+TEST_CASE("the force that just tips within a time is that whose least duration is the time", "[push]") {
+  for (const bool turns : {true, false}) {
+    const Rocker box = box_rocker(turns);
+    for (const double over : {1.001, 2.0, 1e6}) {
+      const double force = over * box.threshold();
+      CHECK(box.least_force(box.least_duration(force)) == Approx(force).epsilon(1e-11));
+    }
+    for (const double duration : {1e6, 1e300})
+      CHECK(box.least_force(duration) == Approx(box.threshold()).epsilon(1e-15));
+  }
+}
+
+TEST_CASE("a push that goes on long after the body has tipped ends with it", "[push]") {
+  const Rocker box = box_rocker();
+  const double force = 3 * box.threshold();
+  const PushResult brief = push(box, square_pulse(force, 10)), lasting = push(box, square_pulse(force, 1e300));
+  CHECK(lasting.outcome == Outcome::tipped);
+  CHECK(lasting.end_time == Approx(brief.end_time).epsilon(1e-12));
+  CHECK(lasting.friction_needed == Approx(brief.friction_needed).epsilon(1e-12));
+}
+
+TEST_CASE("a push is left off where the caller wants to stop", "[push]") {
+  struct Stop final : Monitor {
+    bool stopped() const override { return true; }
+  };
+  const Rocker box = box_rocker();
+  const double force = 3 * box.threshold();
+  const auto interrupted = [](const auto& work) {
+    try {
+      work();
+      FAIL("it goes on");
+    } catch (const Error& error) {
+      CHECK(error.fault() == Fault::interrupted);
+    }
+  };
+  interrupted([&] { push(box, square_pulse(force, 1), Stop()); });
+  interrupted([&] { box.least_duration(force, Stop()); });
+  interrupted([&] { box.least_force(1, Stop()); });
+}
+
 TEST_CASE("pushes that make no sense are refused", "[push]") {
   const Rocker box = box_rocker();
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -196,6 +237,7 @@ TEST_CASE("pushes that make no sense are refused", "[push]") {
   refused({{0, 1}, {nan, 1}}, "row 1");
   refused({{-1, 1}, {1, 1}}, "row 1");
   refused({{0, 2, 1}, {1, 1, 1}}, "row 3");
+  refused({{0, 2}, {1e308, 1e308}}, "impulse");
   Rocker ball = box;
   ball.balance = 0;
   CHECK_THROWS_AS(push(ball, square_pulse(1, 1)), Error);

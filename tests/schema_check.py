@@ -275,12 +275,15 @@ with tempfile.TemporaryDirectory() as folder:
         file.write("time,force\n0,0\n0.1,5000\n0.2,0\n")
     for arguments in (
         ["builtin:box:1,2,1"],
+        ["builtin:box:1,2,1", "--length", "2m", "--density", "9", "--friction", "0.1", "--push", "1N:1s", "--punch", "1N"],
         ["builtin:cow@1", "--length", "2.5m", "--density", "1g/cm3", "--friction", "0.6", "--push", push, "--punch-duration", "20ms"],
         ["builtin:cow@1", "--length", "2.5m", "--order", "0..2,full", "--of", "smooth", "--as-modelled", "--contact-tolerance", "1cm"],
         [surface, "--order", "0,3", "--fields", "f"],
     ):
         found = output_of("tip", *arguments, "--device", "cpu", "--json")
         jsonschema.validate(found, tip)
+        assert set(found) <= set(tip["properties"])
+        assert all(set(entry) == set(tip["properties"]["orders"]["items"]["properties"]) for entry in found["orders"])
         assert found["orders"][-1]["order"] == "full" and found["orders"][-1]["force_N"] == found["force_N"]
         assert ("push_tips" in found) is ("--push" in arguments) and ("boundary" in found) is ("--length" in arguments)
     found["orders"][0]["side"] = "up"

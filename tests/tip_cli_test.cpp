@@ -127,6 +127,72 @@ TEST_CASE("a push that lasts: pulse and table, body and space, and the boundary 
   CHECK(never_tips == 2); // 50 N and the threshold itself
 }
 
+TEST_CASE("what never happens is called so on the screen, and no unit follows what is not known", "[tip][cli]") {
+  const auto screen = [](const std::vector<std::string>& arguments) {
+    const ProgramRun run = run_program(with({"tip"}, arguments));
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    CHECK_THAT(run.out, !Catch::Matches("[^]*not known [^]*"));
+    return run.out;
+  };
+  CHECK_THAT(screen(with(crate, {"--punch", "20N", "--push", "20N:1s", "--friction", "0.05"})),
+             Contains("must last                              never") &&
+                 Contains("lifts off after                        never\n") && Contains("`grips` says") &&
+                 Contains("feet held"));
+  CHECK_THAT(screen({"builtin:box:1,2,0.8"}), Contains("not known\n"));
+}
+
+TEST_CASE("very long punches and the limits of gravity are followed to their end", "[tip][cli]") {
+  const json found = answer(with(crate, {"--punch", "50000N", "--punch-duration", "1e9s"}));
+  CHECK(found["punch_tips"] == true);
+  CHECK(found["punch_force_needed_N"].get<double>() == Approx(found["force_N"].get<double>()).epsilon(1e-13));
+  for (const char* gravity : {"1e-6", "1e13"}) {
+    const json there = answer(with(crate, {"--gravity", gravity}));
+    CHECK(there["force_N"].get<double>() / std::stod(gravity) ==
+          Approx(found["force_N"].get<double>() / g).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("kilograms of a body whose density nobody stated come with a note", "[tip][cli]") {
+  const auto noted = [](const std::vector<std::string>& arguments) {
+    const ProgramRun run = run_program(with(arguments, {"--json"}));
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return json::parse(run.out)["notes"].dump().find("the density was not given: 1 kg/m3") != std::string::npos;
+  };
+  const std::vector<std::vector<std::string>> commands = {{"tip", "builtin:box:1,2,0.8"},
+                                                          {"drop", "builtin:box:1,2,0.8", "--height", "9m"},
+                                                          {"tides", "builtin:box:1,2,0.8", "--orbit", "7000km"}};
+  for (const auto& command : commands) {
+    INFO(command.front());
+    CHECK(noted(with(command, {"--length-unit", "1m"})));
+    CHECK_FALSE(noted(with(command, {"--length", "2m", "--density", "1"})));
+  }
+  CHECK_FALSE(noted(commands.front()));
+}
+
+TEST_CASE("tip with a hole is that of the solid surface, and a note says so", "[tip][cli]") {
+  const TemporaryFolder folder;
+  const std::string hole = written(folder, "hole.off", // below the crate
+                                   "OFF\n4 4 0\n0 -2 0\n0.1 -1.9 0\n0 -1.9 0.1\n-0.1 -1.9 -0.1\n"
+                                   "3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n");
+  const json found = answer(with(crate, {"--part", hole + "=-1"})), plain = answer(crate);
+  CHECK(found["pivot"][1] == plain["pivot"][1]);
+  CHECK(found["support_points"] == 4);
+  CHECK(found["mass_kg"].get<double>() < plain["mass_kg"].get<double>());
+  CHECK_THAT(found["notes"].dump(), Contains("holes"));
+}
+
+TEST_CASE("tip at an order is stopped by an interrupt while it expands the surface", "[tip][cli]") {
+  ProgramOptions options;
+  options.interrupt_after = 0.5;
+  const ProgramRun run =
+      run_program({"tip", "builtin:box:1,2,3", "--order", "2", "--of", "flow", "--lmax", "256"}, options);
+  CHECK(run.exit_code == 130);
+  CHECK(run.out.empty());
+  CHECK_THAT(run.err, Contains("[interrupted]"));
+}
+
 TEST_CASE("the boundary is drawn where there is one", "[tip][cli]") {
   const TemporaryFolder folder;
   const std::string picture = folder / "boundary.svg";
@@ -229,7 +295,16 @@ TEST_CASE("tip refuses what it is not for, by name", "[tip][cli]") {
   refused({"builtin:box", "--side", "up"}, 2, "--side");
   refused({"builtin:box", "--friction", "-0.1"}, 2, "--friction");
   refused({"builtin:box", "--friction", "nan"}, 2, "--friction");
-  refused({"builtin:box", "--gravity", "0"}, 2, "--gravity");
+  for (const char* gravity : {"0", "1e-320", "1e308", "nan"})
+    refused({"builtin:box", "--gravity", gravity}, 2, "--gravity");
+  refused(with(crate, {"--punch", "1e-320N"}), 2, "--punch");
+  refused(with(crate, {"--sustained", "1e300N"}), 2, "--sustained");
+  refused(with(crate, {"--punch-duration", "1e300s"}), 2, "--punch-duration");
+  refused({"builtin:box", "--length", "1e-12m"}, 2, "--length-unit");
+  refused({"builtin:box:1,2,3", "--density", "-1", "--origin", "mesh"}, 2, "weighs -6");
+  refused({"builtin:box:1,2,3", "--length-unit", "1m", "--density", "-1"}, 2, "weighs -6 kg");
+  refused({"builtin:box:1,2,3", "--part", "builtin:box:1,2,3=-3"}, 2, "weighs -12");
+  refused({metric, "--density", "-1"}, 2, "weighs");
   refused({"builtin:box", "--contact-tolerance", "-1"}, 2, "--contact-tolerance");
   refused({"builtin:box", "--contact-tolerance", "5mm"}, 2, "--length");
   refused({"builtin:box", "--push", "5N:1s"}, 2, "--length");
@@ -252,6 +327,12 @@ TEST_CASE("tip refuses pushes that are none", "[tip][cli]") {
   push("5N:1", 2, "unit");
   push("5kg:1s", 2, "kgf");
   push("nanN:1s", 2, "finite");
+  push("1e31N:1s", 2, "the force is out of range");
+  push("5N:1e10s", 2, "the duration is out of range");
+  push("/dev/null", 2, "suffix .csv");
+  push(folder.path(), 2, "suffix .csv");
+  push(written(folder, "big.csv", "time,force\n0,1e308\n1e308,1e308\n"), 3, "big.csv:2");
+  push(written(folder, "long.csv", "time,force\n0,10\n1e308,10\n"), 3, "long.csv:3");
   push(folder / "none.csv", 5, "none.csv");
   push(written(folder, "empty.csv", "time,force\n"), 3, "two rows");
   push(written(folder, "one.csv", "time,force\n0,5\n"), 3, "two rows");

@@ -190,6 +190,35 @@ TEST_CASE("parts count in the mass, the contact and the point of the push", "[ti
   CHECK(right.inertia == Approx(slab_about + part_about).epsilon(1e-13));
 }
 
+TEST_CASE("a hole takes mass away and holds nothing: the body does not stand on it, nor is it pushed at it", "[tip]") {
+  const Vec3 half(0.5, 1, 1.5);
+  for (const Vec3& corner : {Vec3(-0.25, -1.45, -0.25), Vec3(-0.25, 0.9, -1.6), Vec3(-0.25, -0.25, -0.25)}) {
+    std::vector<Part> parts;
+    parts.emplace_back(ClosedSurface::from(box({0.5, 0.5, 0.5}, corner)), -0.01);
+    const Body body = make_body(ClosedSurface::from(box({1, 2, 3}, -half)), {}, 1, std::move(parts));
+    const Stance stance = stand(tip_body(body), {});
+    INFO(corner.transpose());
+    CHECK(stance.body.mass == Approx(6 - 0.01 / 8).epsilon(1e-15));
+    CHECK(stance.contact.ground == -1);
+    CHECK(stance.contact.support.size() == 4);
+    for (const Side side : {Side::left, Side::right}) {
+      const Vec3 point = tipping(stance, side).point;
+      CHECK(point.y() < 1 + 1e-12);
+      CHECK(std::abs(point.z()) < 1.5 + 1e-12);
+    }
+  }
+}
+
+TEST_CASE("a body of negative mass is told what it weighs", "[tip]") {
+  try {
+    body_of(box({1, 2, 3}), -1);
+    FAIL("it weighs something");
+  } catch (const Error& error) {
+    CHECK(error.fault() == Fault::bad_argument);
+    CHECK_THAT(error.what(), Contains("the body weighs -6"));
+  }
+}
+
 TEST_CASE("the benchmark as modelled takes 1.4 to 1.8 kN by contact patch, as the paper's 'factor of a few'",
           "[tip][paper]") {
   const auto cow = benchmark_cow();

@@ -40,17 +40,24 @@ constexpr std::array applications = {
     Application{
         "tides", "A body on a circular orbit: gravity-gradient torque, attitudes that last, librations, locking",
         "Examples: cowgpu tides benchmark --length 2.5m --density 1g/cm3 --orbit 6771km\n"
-        "          cowgpu tides benchmark --length 2.5m --orbit 400000km --mass 6e24kg --attitude z:30\n"
-        "          cowgpu tides cow.json --length-unit 2.4m --orbit 42164km --love 0.1 --quality 10 --spin 1rad/s",
+        "          cowgpu tides benchmark --length 2.5m --density 1g/cm3 --orbit 400000km --mass 6e24kg --attitude "
+        "z:30\n"
+        "          cowgpu tides cow.json --length-unit 2.4m --density 1g/cm3 --orbit 42164km --love 0.1 --quality 10 "
+        "--spin 1rad/s",
         add_tides},
     Application{"drop", "Whether a body that is dropped lands on its feet: its fall, turned by the gradient of gravity",
                 "Examples: cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude upside-down\n"
-                "          cowgpu drop benchmark --length 2.5m --height 10m --attitude on-side --spin x,10rpm",
+                "          cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude on-side --spin "
+                "x,10rpm",
                 add_drop},
     Application{"tip", "What tips a standing body over onto its side: the least force, and the least push that lasts",
                 "Examples: cowgpu tip benchmark --length 2.5m --density 1g/cm3 --friction 0.6 --push 5000N:0.1s\n"
-                "          cowgpu tip benchmark --of stretch --order 0..8 --json\n"
-                "          cowgpu tip benchmark --recipe paper",
+                "          cowgpu tip benchmark --length 2.5m --density 1g/cm3 --of stretch --order 0..8 --json\n"
+                "          cowgpu tip benchmark --recipe paper\n"
+                "y is up, x forward and right is +z: the body falls to a side about an axis along x, and pushes are\n"
+                "at right angles to x. Without a unit of length forces are in units of the body's weight, and newtons\n"
+                "are not known: --length or --length-unit give them, with --density. A unit of length without\n"
+                "--density leaves 1 kg/m3, a body as light as air.",
                 add_tip},
 };
 
@@ -80,6 +87,7 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
   command->add_flag("--json", options->json, fmt::format("As JSON (data/schemas/cowgpu.{}.v1.json)", application.name));
   command->footer(application.footer);
   command->callback([=, &common] {
+    options->density_given = options->paper() || command->get_option("--density")->count() > 0;
     if (options->paper()) take_paper_body(*command, options->body);
     const physics::Findings findings = solve(*options);
     check_stop(ConsoleMonitor(ProgressStyle::none));
@@ -235,7 +243,13 @@ physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions
     findings.input_kind = "coefficients";
     findings.input_name = options.body.mesh;
   }
+  note_density(options, input.body ? input.body->placement.metric : stated_units(options.body).metric, findings.notes);
   return findings;
+}
+
+void note_density(const PhysicsOptions& options, bool metric, std::vector<std::string>& notes) {
+  if (metric && !options.density_given && !options.body.charge)
+    notes.push_back("the density was not given: 1 kg/m3, of a body as light as air; --density 1g/cm3 is that of water");
 }
 
 void add_physics(CLI::App& app, Common& common) {

@@ -19,6 +19,7 @@ struct PhysicsOptions {
   BodyOptions body; ///< body.mesh is MESH|COEFFS
   std::string recipe = "default";
   bool json = false;
+  bool density_given = false; ///< by --density or the recipe
   bool paper() const { return recipe == "paper"; }
 };
 
@@ -70,6 +71,9 @@ PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& op
 /// Name, hash and notes of an input, for the head of a report.
 physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options);
 
+/// Where kilograms are the result and nobody said how dense the body is: a note that says what was taken.
+void note_density(const PhysicsOptions& options, bool metric, std::vector<std::string>& notes);
+
 /// Computes, once the options are parsed.
 using Solve = std::function<physics::Findings(const PhysicsOptions&)>;
 
@@ -88,7 +92,5 @@ Solve add_radiate(CLI::App& command, Common& common);
 Solve add_tides(CLI::App& command, Common& common);
 Solve add_drop(CLI::App& command, Common& common);
 Solve add_tip(CLI::App& command, Common& common);
-Solve add_tides(CLI::App& command, Common& common);
-Solve add_drop(CLI::App& command, Common& common);
 
 } // namespace cowgpu::cli

@@ -20,6 +20,8 @@ namespace {
 using namespace physics;
 
 constexpr double degrees = 180 / std::numbers::pi;
+constexpr double least_gravity = 1e-6, largest_gravity = 1e13; // m/s^2
+constexpr double least_weight = 1e-30, largest_weight = 1e40;  // N
 
 struct Options {
   TipChoice choice;
@@ -41,9 +43,9 @@ struct Stood {
   const Tipping& chosen() const { return side == Side::left ? left : right; }
 };
 
-Stood stand_up(TipBody body, const StandOptions& how, const std::string& side) {
+Stood stand_up(TipBody body, const StandOptions& how, const std::string& side, const Monitor& monitor) {
   Stood stood;
-  stood.stance = stand(std::move(body), how);
+  stood.stance = stand(std::move(body), how, monitor);
   stood.left = tipping(stood.stance, Side::left);
   stood.right = tipping(stood.stance, Side::right);
   stood.side = side == "left" ? Side::left : side == "right" ? Side::right : weaker_side(stood.left, stood.right);
@@ -134,7 +136,8 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
     if (order == 0) standing.as_modelled = true; // a ball stands in any attitude, but on facets of its triangulation
     try {
       std::string note;
-      const Stood stood = stand_up(order_body(input, options.choice, order, monitor, note), standing, options.side);
+      TipBody body = order_body(input, options.choice, order, monitor, note);
+      const Stood stood = stand_up(std::move(body), standing, options.side, monitor);
       table.rows.push_back(order_row(double(order), stood, options.gravity, input.metric, order_note(stood, note)));
     } catch (const Error& error) {
       if (error.fault() != Fault::cannot_stand && error.fault() != Fault::mesh_no_volume &&
@@ -181,7 +184,8 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
       {"force_over_weight", "the same over the weight", t.force},
       {"force_over_weight_paper_balance", "the paper's balance over the weight", t.force_paper_balance},
       {"force_N_paper_balance", "about the barycentre, as the paper has it", weight.of(t.force_paper_balance), "N"},
-      {"force_N_paper_literal", "the same with its arm in space", weight.of(t.force_paper_literal), "N"},
+      {"force_N_paper_literal", "the same with its arm in space", weight.of(t.force_paper_literal), "N",
+       input.metric ? "none: its ray meets no surface" : "not known"},
       {"force_left_N", "force to begin, to the left", weight.of(stood.left.force), "N"},
       {"force_right_N", "to the right", weight.of(stood.right.force), "N"},
       {"friction_needed", "friction coefficient not to slip", t.friction_needed},
@@ -205,7 +209,7 @@ void add_notes(const Stood& stood, const TipInput& input, const Options& options
   const Stance& stance = stood.stance;
   if (!input.metric)
     found.notes.push_back("no unit of length was stated: forces are in units of the body's weight; --length or "
-                          "--length-unit make them newtons");
+                          "--length-unit, with --density, make them newtons");
   if (!options.as_modelled)
     found.notes.push_back(
         fmt::format("settled: it rolled down from the attitude as modelled to where its barycentre is "
@@ -235,7 +239,8 @@ void add_notes(const Stood& stood, const TipInput& input, const Options& options
       "to it; the paper's balance about the barycentre leaves out friction's torque");
 }
 
-std::vector<Comparison> beside_paper(const TipInput& input, const Options& options, const Stood& settled) {
+std::vector<Comparison> beside_paper(const TipInput& input, const Options& options, const Stood& settled,
+                                     const Monitor& monitor) {
   const double weight = settled.stance.body.mass * options.gravity;
   constexpr double human = paper::sustained_force_N;
   const auto factor = [&](double force) {
@@ -244,7 +249,7 @@ std::vector<Comparison> beside_paper(const TipInput& input, const Options& optio
   };
   std::vector<Comparison> rows;
   const double volume = cowgpu::volume(input.full.vertices, input.full.faces);
-  const Stood ball = stand_up(ball_like(input.full, volume), {}, "right");
+  const Stood ball = stand_up(ball_like(input.full, volume), {}, "right", monitor);
   rows.push_back({"spherical cow, N", ball.chosen().force * weight, 0});
   const auto add = [&](const std::string& what, double force) { rows.push_back({what, force, human, factor(force)}); };
   const Tipping& t = settled.chosen();
@@ -254,13 +259,32 @@ std::vector<Comparison> beside_paper(const TipInput& input, const Options& optio
   if (input.head.input_sha256 != benchmark_sha256) return rows;
   for (const auto& [what, tolerance] :
        {std::pair("hind hooves' tips", 0.0), std::pair("hind hooves", 0.005), std::pair("all hooves", 0.01)}) {
-    const Stood modelled = stand_up(input.full, {true, tolerance * input.unit}, "weaker");
+    const Stood modelled = stand_up(input.full, {true, tolerance * input.unit}, "weaker", monitor);
     add(fmt::format("as modelled, {}, N", what), modelled.chosen().force * weight);
   }
   return rows;
 }
 
+void check_gravity(double gravity) {
+  if (!(gravity >= least_gravity && gravity <= largest_gravity))
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--gravity {}: it must be from {:g} m/s^2 to {:g} m/s^2, as it is from the smallest asteroids to "
+                    "neutron stars",
+                    gravity, least_gravity, largest_gravity));
+}
+
+void check_weight(const TipInput& input, double gravity) {
+  const double weight = input.full.mass * gravity;
+  if (input.metric && !(weight >= least_weight && weight <= largest_weight))
+    throw Error(Fault::bad_argument,
+                fmt::format("the body weighs {:.3g} N: a push can be followed from {:g} N to {:g} N; look at --length, "
+                            "--length-unit and --density",
+                            weight, least_weight, largest_weight));
+}
+
 Findings solve(const PhysicsOptions& common, const Options& options, const Common& program) {
+  check_gravity(options.gravity);
   const PushPlan plan = plan_push(options.push);
   if (!options.plot.empty()) {
     check_tip_plot(options.plot);
@@ -271,28 +295,31 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
     throw Error(Fault::bad_argument,
                 "--push, --punch-duration and --plot are about newtons and seconds: add --length, how long "
                 "the body is, or --length-unit, and its --density");
+  check_weight(input, options.gravity);
   const StandOptions how = stand_options(options, input);
   input.full.smooth = input.full.smooth || options.smooth;
-  const Stood stood = stand_up(input.full, how, options.side);
-  Findings found = input.head;
   ConsoleMonitor monitor(program.style());
+  const Stood stood = stand_up(input.full, how, options.side, monitor);
+  Findings found = input.head;
   add_notes(stood, input, options, found);
   add_force_rows(stood, input, options, found);
   const std::string length = input.metric ? "m" : "of the mesh";
   std::optional<double> friction;
   if (options.friction >= 0) friction = options.friction;
   const Rocker body = rocker(stood.stance.body, stood.chosen(), options.gravity, plan.turns_with_body);
-  if (input.metric) add_push_findings(body, options.push, plan, friction, found);
+  if (input.metric) add_push_findings(body, options.push, plan, friction, monitor, found);
   if (!options.plot.empty() && !(body.balance > 0))
     throw Error(Fault::bad_argument, "--plot: any push tips this body, so there is no boundary to draw");
   found.tables.insert(found.tables.begin(), patch_table(stood.stance, length));
   found.tables.push_back(orders_table(input, options, how, stood, length, monitor));
   monitor.clear();
-  if (common.paper())
-    found.paper = beside_paper(input, options, options.as_modelled ? stand_up(input.full, {}, options.side) : stood);
+  if (common.paper()) {
+    const Stood settled = options.as_modelled ? stand_up(input.full, {}, options.side, monitor) : stood;
+    found.paper = beside_paper(input, options, settled, monitor);
+  }
   if (!options.plot.empty()) {
     check_stop(monitor);
-    write_tip_plot(body, options.push, plan, options.plot);
+    write_tip_plot(body, options.push, plan, monitor, options.plot);
     if (!program.quiet) say(fmt::format("cowgpu: wrote {}\n", options.plot));
   }
   return found;
@@ -330,7 +357,9 @@ Solve add_tip(CLI::App& command, Common& common) {
       ->check(CLI::Range(1, largest_grid_degree))
       ->type_name("N");
   command.add_option("--mesh", options->choice.mesh, "Of a file: the true body")->type_name("MESH");
-  command.add_option("--side", options->side, "The side it falls to: left, right (z), or the weaker")
+  command
+      .add_option("--side", options->side,
+                  "The side it falls to, about an axis along x (y is up): left (-z), right (+z), or the weaker")
       ->check(CLI::IsMember({"weaker", "left", "right"}))
       ->capture_default_str();
   command.add_flag(
@@ -344,7 +373,7 @@ Solve add_tip(CLI::App& command, Common& common) {
                   "Vertices so little above the ground touch it, in the mesh's unit or with one (1e-9 of the body)")
       ->type_name("LENGTH")
       ->check(not_empty());
-  command.add_option("--gravity", options->gravity, "m/s^2")->check(positive_number())->capture_default_str();
+  command.add_option("--gravity", options->gravity, "In m/s^2")->check(positive_number())->capture_default_str();
   command.add_option("--friction", options->friction, "Friction coefficient of the feet: do they slip first?")
       ->check(non_negative_number())
       ->type_name("MU");

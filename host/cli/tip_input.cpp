@@ -130,6 +130,9 @@ void from_coefficients(const PhysicsOptions& options, const TipChoice& choice, T
     throw Error(Fault::bad_argument, fmt::format("--length-unit: {} is in metres already", file));
   if (metric) units.length_unit = "1m";
   const StatedUnits stated = stated_units(units);
+  if (!(stated.density > 0))
+    throw Error(Fault::bad_argument,
+                fmt::format("--density {}: the body weighs nothing or less; it must be above 0", options.body.density));
   input.metric = stated.metric;
   input.unit = stated.metres;
   scale(source.expansion, stated.metres);
@@ -138,6 +141,7 @@ void from_coefficients(const PhysicsOptions& options, const TipChoice& choice, T
   input.head.input_kind = "coefficients";
   input.head.input_name = file;
   input.head.notes = source.notes;
+  note_density(options, input.metric, input.head.notes);
   input.expansion = std::move(source.expansion);
   input.expansion_name = source.name;
   check_orders(input, choice, file);
@@ -183,6 +187,9 @@ void from_mesh(const PhysicsOptions& options, const TipChoice& choice, TipInput&
   const Body& body = *loaded.body;
   input.full = tip_body(body);
   input.full_is = "the mesh";
+  if (std::any_of(body.parts.begin(), body.parts.end(), [](const Part& part) { return part.density < 0; }))
+    input.head.notes.push_back(
+        "parts of negative density are holes: the body neither stands on them nor is pushed at them");
   input.metric = body.placement.metric;
   input.unit = body.placement.scale;
   if (input.orders.empty()) return;

@@ -15,7 +15,7 @@ void check_tip_plot(const std::string& path) {
 }
 
 void write_tip_plot(const physics::Rocker& rocker, const PushOptions& options, const PushPlan& plan,
-                    const std::string& path) {
+                    const Monitor& monitor, const std::string& path) {
   const double threshold = rocker.threshold();
   plot::Plot picture;
   picture.x = {.label = "force", .unit = "N", .scale = plot::Scale::logarithmic};
@@ -27,7 +27,7 @@ void write_tip_plot(const physics::Rocker& rocker, const PushOptions& options, c
   for (double over = 1e-4; (1 + over) * threshold < last; over *= 1.08) boundary.x.push_back((1 + over) * threshold);
   boundary.x.push_back(last);
   for (const double force : boundary.x) {
-    boundary.y.push_back(rocker.least_duration(force));
+    boundary.y.push_back(rocker.least_duration(force, monitor));
     blow.y.push_back(rocker.least_impulse() / force);
   }
   blow.x = boundary.x;
@@ -39,7 +39,7 @@ void write_tip_plot(const physics::Rocker& rocker, const PushOptions& options, c
                    {true, plan.sustained, options.sustained + " sustained"}};
   picture.x.high = last;
   picture.x.low = 0.7 * std::min(threshold, plan.sustained);
-  const double least = rocker.least_duration(plan.punch);
+  const double least = rocker.least_duration(plan.punch, monitor);
   if (std::isfinite(least))
     picture.points = {{plan.punch, least, fmt::format("{} punch: {:.3g} s", options.punch, least)}};
   if (plan.punch_duration)

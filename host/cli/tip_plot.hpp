@@ -13,6 +13,6 @@ void check_tip_plot(const std::string& path);
 /// How long a constant push must last over how strong it is, with the sustained force and the punch. Throws what
 /// plot::write_plot() throws.
 void write_tip_plot(const physics::Rocker& rocker, const PushOptions& options, const PushPlan& plan,
-                    const std::string& path);
+                    const Monitor& monitor, const std::string& path);
 
 } // namespace cowgpu::cli

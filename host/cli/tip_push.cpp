@@ -19,6 +19,20 @@ using namespace physics;
 
 constexpr double degrees = 180 / std::numbers::pi;
 
+constexpr double least_force = 1e-30, largest_force = 1e30; // N
+constexpr double shortest_push = 1e-15, longest_push = 1e9; // s
+
+double parse_between(const char* option, const std::string& text, const std::string& part, Dimension dimension,
+                     const char* example) {
+  const double value = parse_positive(option, part, dimension, example);
+  const bool force = dimension == Dimension::force;
+  const double least = force ? least_force : shortest_push, most = force ? largest_force : longest_push;
+  if (value >= least && value <= most) return value;
+  const char* unit = force ? "N" : "s";
+  throw Error(Fault::bad_argument, fmt::format("{} {}: {} is out of range: {:g} {} to {:g} {}", option, text,
+                                               force ? "the force" : "the duration", least, unit, most, unit));
+}
+
 Profile read_profile(const std::string& file) {
   const CsvTable table = read_csv(file);
   const auto named = [&](std::size_t column, const char* plain, const char* with_unit) {
@@ -32,6 +46,10 @@ Profile read_profile(const std::string& file) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double time = table.at(row, 0), force = table.at(row, 1);
     if (force < 0) table.fail_row(row, fmt::format("the force is {} N; it must not be below 0", force));
+    if (force > largest_force)
+      table.fail_row(row, fmt::format("the force is {} N; it must not be above {:g} N", force, largest_force));
+    if (time > longest_push)
+      table.fail_row(row, fmt::format("the time is {} s; a push must end within {:g} s", time, longest_push));
     if (time < (row ? profile.time.back() : 0))
       table.fail_row(row, fmt::format("the time is {} s, before what it follows; times rise from 0 on", time));
     profile.time.push_back(time);
@@ -44,11 +62,12 @@ Profile parse_push(const std::string& text) {
   if (text.ends_with(".csv")) return read_profile(text);
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos)
-    throw Error(Fault::bad_argument, fmt::format("--push {}: it takes FORCE:DURATION, such as 5000N:0.1s, or FILE.csv "
-                                                 "with the columns time,force in seconds and newtons",
+    throw Error(Fault::bad_argument, fmt::format("--push {}: it takes FORCE:DURATION, such as 5000N:0.1s, or a file, "
+                                                 "which is known by its suffix .csv and holds the columns time,force "
+                                                 "in seconds and newtons",
                                                  text));
-  return square_pulse(parse_positive("--push", text.substr(0, colon), Dimension::force, "5000N:0.1s"),
-                      parse_positive("--push", text.substr(colon + 1), Dimension::time, "5000N:0.1s"));
+  return square_pulse(parse_between("--push", text, text.substr(0, colon), Dimension::force, "5000N:0.1s"),
+                      parse_between("--push", text, text.substr(colon + 1), Dimension::time, "5000N:0.1s"));
 }
 
 Value finite(double value) {
@@ -60,20 +79,8 @@ std::string name(Outcome outcome) {
   return outcome == Outcome::fell_back ? "lifts off and falls back" : "never lifts off";
 }
 
-// The force that just tips within a time: least_duration() falls with it.
-double least_force(const Rocker& rocker, double duration) {
-  double low = rocker.threshold(), high = 2 * low;
-  while (rocker.least_duration(high) > duration && high < 1e300) high *= 2;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = (low + high) / 2;
-    if (middle <= low || middle >= high) break;
-    (rocker.least_duration(middle) > duration ? low : high) = middle;
-  }
-  return high;
-}
-
 Table boundary(const Rocker& rocker, const PushOptions& options, const PushPlan& plan,
-               const std::optional<double>& friction) {
+               const std::optional<double>& friction, const Monitor& monitor) {
   struct Row {
     double force;
     std::string mark;
@@ -86,14 +93,15 @@ Table boundary(const Rocker& rocker, const PushOptions& options, const PushPlan&
     forces.push_back({factor * threshold, ""});
   std::stable_sort(forces.begin(), forces.end(), [](const Row& a, const Row& b) { return a.force < b.force; });
   Table table{"boundary",
-              "how long a constant push must last to tip it (-: it never does)",
+              "how long a constant push must last to tip it, its feet held where they are (-: it never does)",
               {{"force_N", "N"}, {"least_duration_s", "s"}, {"impulse_Ns", "N s"}, {"friction_needed"}, {"mark"}},
               {}};
   if (friction) table.columns.insert(table.columns.end() - 1, {"grips"});
   for (const Row& row : forces) {
-    const double duration = rocker.least_duration(row.force);
+    const double duration = rocker.least_duration(row.force, monitor);
     const bool tips = std::isfinite(duration);
-    const double needed = push(rocker, square_pulse(row.force, tips ? duration * (1 + 1e-9) : 1)).friction_needed;
+    const Profile pulse = square_pulse(row.force, tips ? duration * (1 + 1e-9) : 1);
+    const double needed = push(rocker, pulse, monitor).friction_needed;
     std::vector<Value> values = {row.force, finite(duration), finite(duration * row.force), finite(needed)};
     if (friction) values.emplace_back(needed <= *friction);
     values.emplace_back(row.mark);
@@ -103,8 +111,8 @@ Table boundary(const Rocker& rocker, const PushOptions& options, const PushPlan&
 }
 
 void add_profile(const Rocker& rocker, const PushOptions& options, const Profile& profile,
-                 const std::optional<double>& friction, Findings& found) {
-  const PushResult result = push(rocker, profile);
+                 const std::optional<double>& friction, const Monitor& monitor, Findings& found) {
+  const PushResult result = push(rocker, profile, monitor);
   const bool lifted = result.outcome != Outcome::never_lifted;
   const std::vector<Finding> rows = {
       {"push", "push", options.push},
@@ -112,9 +120,11 @@ void add_profile(const Rocker& rocker, const PushOptions& options, const Profile
       {"push_outcome", "the body", name(result.outcome)},
       {"push_tips", "tips over", result.outcome == Outcome::tipped},
       {"push_peak_tilt_deg", "largest tilt", result.peak_tilt * degrees, "degrees"},
-      {"push_lift_time_s", "lifts off after", lifted ? Value(result.lift_time) : Value(), "s"},
-      {"push_end_time_s", "past the balance, or landed, after", lifted ? finite(result.end_time) : Value(), "s"},
-      {"push_friction_needed", "friction coefficient that takes", finite(result.friction_needed)},
+      {"push_lift_time_s", "lifts off after", lifted ? Value(result.lift_time) : Value(), "s", "never"},
+      {"push_end_time_s", "past the balance, or landed, after", lifted ? finite(result.end_time) : Value(), "s",
+       lifted ? "not known" : "never"},
+      {"push_friction_needed", "friction coefficient that takes", finite(result.friction_needed), "",
+       "none is enough: the feet leave the ground"},
   };
   found.rows.insert(found.rows.end(), rows.begin(), rows.end());
   if (std::isinf(result.friction_needed))
@@ -135,9 +145,10 @@ void add_profile(const Rocker& rocker, const PushOptions& options, const Profile
 
 void add_push_options(CLI::App& command, PushOptions& options) {
   command
-      .add_option("--push", options.push,
-                  "A push that lasts: a constant FORCE:DURATION, such as 5000N:0.1s, or FILE.csv with the columns "
-                  "time,force (s, N; straight lines between)")
+      .add_option(
+          "--push", options.push,
+          "A push that lasts: a constant FORCE:DURATION, such as 5000N:0.1s, or FILE.csv (known by that suffix) "
+          "with the columns time,force (s, N; straight lines between)")
       ->type_name("PUSH")
       ->check(not_empty());
   command
@@ -160,10 +171,13 @@ void add_push_options(CLI::App& command, PushOptions& options) {
 PushPlan plan_push(const PushOptions& options) {
   PushPlan plan;
   plan.turns_with_body = options.direction == "body";
-  plan.sustained = parse_positive("--sustained", options.sustained, Dimension::force, "500N");
-  plan.punch = parse_positive("--punch", options.punch, Dimension::force, "5000N");
+  const auto option = [](const char* name, const std::string& text, Dimension dimension, const char* example) {
+    return parse_between(name, text, text, dimension, example);
+  };
+  plan.sustained = option("--sustained", options.sustained, Dimension::force, "500N");
+  plan.punch = option("--punch", options.punch, Dimension::force, "5000N");
   if (!options.punch_duration.empty())
-    plan.punch_duration = parse_positive("--punch-duration", options.punch_duration, Dimension::time, "20ms");
+    plan.punch_duration = option("--punch-duration", options.punch_duration, Dimension::time, "20ms");
   if (!options.push.empty()) plan.profile = parse_push(options.push);
   return plan;
 }
@@ -173,36 +187,40 @@ Rocker rocker(const TipBody& body, const Tipping& tipping, double gravity, bool 
 }
 
 void add_push_findings(const Rocker& rocker, const PushOptions& options, const PushPlan& plan,
-                       std::optional<double> friction, Findings& found) {
+                       std::optional<double> friction, const Monitor& monitor, Findings& found) {
   if (!(rocker.balance > 0)) {
     found.notes.push_back("any push tips it, however small and short: it has no threshold and no boundary");
     return;
   }
-  const double duration = rocker.least_duration(plan.punch), impulse = rocker.least_impulse();
+  const double duration = rocker.least_duration(plan.punch, monitor), impulse = rocker.least_impulse();
   const std::vector<Finding> rows = {
       {"push_direction", "direction of a push that lasts",
        std::string(plan.turns_with_body ? "turns with the body" : "stays in space")},
       {"balance_angle_deg", "falls by itself from a tilt of", rocker.balance * degrees, "degrees"},
       {"inertia_about_pivot", "moment of inertia about the pivot edge", rocker.inertia, "kg m^2"},
-      {"least_energy_J", "energy that tips it",
-       rocker.mass * rocker.gravity * rocker.radius * (1 - std::cos(rocker.balance)), "J"},
+      {"least_energy_J", "energy that tips it", rocker.least_energy(), "J"},
       {"least_impulse_Ns", "smallest impulse, of a short push", impulse, "N s"},
       {"sustained_N", "sustained force", plan.sustained, "N"},
       {"sustained_tips", "tips it in the end", plan.sustained > rocker.threshold()},
       {"sustained_short_by", "force to begin over that", rocker.threshold() / plan.sustained},
       {"punch_N", "punch", plan.punch, "N"},
-      {"punch_least_duration_s", "must last", finite(duration), "s"},
-      {"punch_impulse_Ns", "which is", finite(duration * plan.punch), "N s"},
+      {"punch_least_duration_s", "must last", finite(duration), "s",
+       "never: it does not tip it, however long it lasts"},
+      {"punch_impulse_Ns", "which is", finite(duration * plan.punch), "N s", "none is enough"},
   };
   found.rows.insert(found.rows.end(), rows.begin(), rows.end());
   if (plan.punch_duration) {
-    const double needed = least_force(rocker, *plan.punch_duration);
+    const double needed = rocker.least_force(*plan.punch_duration, monitor);
     found.rows.push_back({"punch_duration_s", "the punch lasts", *plan.punch_duration, "s"});
     found.rows.push_back({"punch_tips", "and tips it", duration <= *plan.punch_duration});
     found.rows.push_back({"punch_force_needed_N", "force that does in that time", needed, "N"});
   }
-  if (plan.profile) add_profile(rocker, options, *plan.profile, friction, found);
-  found.tables.push_back(boundary(rocker, options, plan, friction));
+  if (plan.profile) add_profile(rocker, options, *plan.profile, friction, monitor, found);
+  found.tables.push_back(boundary(rocker, options, plan, friction, monitor));
+  if (friction)
+    found.notes.push_back(
+        "boundary: `grips` says whether this friction holds the feet; where it says no they slip, and the "
+        "duration in that row, which is that of feet held where they are, does not apply");
 }
 
 } // namespace cowgpu::cli

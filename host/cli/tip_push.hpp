@@ -28,8 +28,9 @@ struct PushPlan {
   std::optional<double> punch_duration; ///< s
 };
 
-/// Throws Error(bad_argument) for words that mean nothing, what read_csv() throws, and file_syntax with the line for times that
-/// fall and forces below 0.
+/// Throws Error(bad_argument) for words that mean nothing, for forces beyond 1e-30 to 1e30 N and durations beyond 1e-15 to
+/// 1e9 s; what read_csv() throws, and file_syntax with the line for times that fall or are beyond that and forces below
+/// 0 or above it.
 PushPlan plan_push(const PushOptions& options);
 
 /// Of a body in SI units.
@@ -38,6 +39,6 @@ physics::Rocker rocker(const physics::TipBody& body, const physics::Tipping& tip
 
 /// Rows, notes and the table `boundary`. `friction`: the coefficient, where it is given.
 void add_push_findings(const physics::Rocker& rocker, const PushOptions& options, const PushPlan& plan,
-                       std::optional<double> friction, physics::Findings& found);
+                       std::optional<double> friction, const Monitor& monitor, physics::Findings& found);
 
 } // namespace cowgpu::cli

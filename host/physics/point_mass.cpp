@@ -6,7 +6,6 @@
 #include "host/spectrum/convert.hpp"
 #include "host/spectrum/verify.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
@@ -19,13 +18,7 @@ MassiveBody massive_body(const MassTensors& tensors, Coefficients moments, int o
   body.quadrupole = tensors.quadrupole;
   body.radius = tensors.radius;
   body.order = order;
-  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(body.inertia).eigenvalues()[0];
-  if (!(body.mass > 0) || !(least > 0))
-    throw Error(
-        Fault::bad_argument,
-        fmt::format("the body weighs {:.6g} kg and its least moment of inertia is {:.6g} kg m^2: only one with both "
-                    "above 0 moves as bodies do",
-                    body.mass, least));
+  check_weighs(tensors);
   if (order < 3) return body;
   for (int l = 0; l <= 2; ++l)
     for (int m = 0; m <= l; ++m) moments.values[Coefficients::index(l, m)] = 0;

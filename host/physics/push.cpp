@@ -46,10 +46,14 @@ Panel panel(const std::function<double(double)>& f, double a, double b) {
 }
 
 // Halves what is off by more than `tolerance`, twenty times at most: what is left then is rounding.
-double integral(const std::function<double(double)>& f, double a, double b, double tolerance, int depth = 0) {
+double integral(const std::function<double(double)>& f, double a, double b, double tolerance, const Monitor& monitor,
+                int depth = 0) {
+  check_stop(monitor);
   const Panel whole = panel(f, a, b);
-  if (depth == 20 || whole.error <= std::max(tolerance, 1e-13 * std::abs(whole.value))) return whole.value;
-  return integral(f, a, (a + b) / 2, tolerance, depth + 1) + integral(f, (a + b) / 2, b, tolerance, depth + 1);
+  const bool good = whole.error <= std::max(tolerance, 1e-13 * std::abs(whole.value));
+  if (good || depth == 20 || !std::isfinite(whole.value)) return whole.value;
+  return integral(f, a, (a + b) / 2, tolerance, monitor, depth + 1) +
+         integral(f, (a + b) / 2, b, tolerance, monitor, depth + 1);
 }
 
 // theta - sin theta without loss.
@@ -110,11 +114,14 @@ struct Motion {
 
 enum class Event { none, tipped, landed };
 
+constexpr double tolerance = 1e-12;
+constexpr long most_steps = 2000000;
+
 class Integrator {
 public:
-  Integrator(const Rocker& rocker, double tolerance, PushResult& result)
-      : rocker_(rocker), result_(result),
-        rate_(std::sqrt(rocker.mass * rocker.gravity * rocker.radius / rocker.inertia)), tolerance_(tolerance) {}
+  Integrator(const Rocker& rocker, PushResult& result, const Monitor& monitor)
+      : rocker_(rocker), result_(result), monitor_(monitor),
+        rate_(std::sqrt(rocker.mass * rocker.gravity * rocker.radius / rocker.inertia)) {}
 
   double t = 0;
   State y = State::Zero();
@@ -123,7 +130,11 @@ public:
   Event run(const Motion& motion, double end) {
     double h = std::min(end - t, 1e-3 / rate_);
     note(motion);
-    for (long steps = 0; t < end && steps < 2000000; ++steps) {
+    for (long steps = 0; t < end; ++steps) {
+      if (steps % 256 == 0) check_stop(monitor_);
+      if (steps == most_steps)
+        throw Error(Fault::check_failed,
+                    fmt::format("the motion cannot be followed beyond {} s: it takes more than {} steps", t, steps));
       h = std::min(h, end - t);
       State error;
       const State next = motion.step(t, y, h, error);
@@ -131,9 +142,9 @@ public:
       const double least = 1e-3 * rocker_.balance;
       const double wrong = std::max(std::abs(error[0]) / std::max(std::abs(y[0]), least),
                                     std::abs(error[1]) / (rate_ * std::max(std::abs(y[1] / rate_), least))) /
-                           tolerance_;
-      const double factor = 0.9 * std::pow(std::max(wrong, 1e-10), -0.2);
-      if (wrong > 1 && h > 1e-14 * end) {
+                           tolerance;
+      const double factor = std::isfinite(wrong) ? 0.9 * std::pow(std::max(wrong, 1e-10), -0.2) : 0;
+      if (!(wrong <= 1) && h > 1e-14 * t) {
         h *= std::max(factor, 0.2);
         continue;
       }
@@ -192,7 +203,8 @@ private:
 
   const Rocker& rocker_;
   PushResult& result_;
-  double rate_, tolerance_;
+  const Monitor& monitor_;
+  double rate_;
 };
 
 void check(const Rocker& rocker) {
@@ -209,11 +221,15 @@ double Rocker::threshold() const {
   return mass * gravity * radius * std::sin(balance) / lever;
 }
 
-double Rocker::least_impulse() const {
-  return std::sqrt(2 * inertia * mass * gravity * radius * lifted(balance, balance)) / lever;
+double Rocker::least_energy() const {
+  return mass * gravity * radius * lifted(balance, balance);
 }
 
-double Rocker::least_duration(double force) const {
+double Rocker::least_impulse() const {
+  return std::sqrt(2 * inertia * least_energy()) / lever;
+}
+
+double Rocker::least_duration(double force, const Monitor& monitor) const {
   const double over = force / threshold();
   if (!(over > 1)) return infinity;
   const double sine = std::sin(balance), cosine = std::cos(balance);
@@ -226,7 +242,17 @@ double Rocker::least_duration(double force) const {
     const double arm = turns_with_body ? theta : std::sin(theta), more = turns_with_body ? less_sine(theta) : 0;
     return 2 * end * s / std::sqrt(omega2 * (sine * ((over - 1) * arm + more) + 2 * cosine * half * half));
   };
-  return integral(slowness, 0, 1, 1e-14 * panel(slowness, 0, 1).value);
+  return integral(slowness, 0, 1, 1e-14 * panel(slowness, 0, 1).value, monitor);
+}
+
+double Rocker::least_force(double duration, const Monitor& monitor) const {
+  double low = threshold(), high = 2 * low;
+  while (least_duration(high, monitor) > duration && high < 1e300) high *= 2;
+  for (;;) {
+    const double middle = low + (high - low) / 2;
+    if (!(low < middle && middle < high)) return high;
+    (least_duration(middle, monitor) > duration ? low : high) = middle;
+  }
 }
 
 double Profile::impulse() const {
@@ -253,14 +279,16 @@ void check(const Profile& profile) {
                                                    "from 0 on",
                                                    i + 1, profile.time[i]));
   }
+  if (!std::isfinite(profile.impulse()))
+    throw Error(Fault::bad_argument, "the impulse of the push is no finite number: its forces are too large");
 }
 
-PushResult push(const Rocker& rocker, const Profile& profile, double tolerance) {
+PushResult push(const Rocker& rocker, const Profile& profile, const Monitor& monitor) {
   check(rocker);
   check(profile);
   PushResult result;
   result.lift_time = std::numeric_limits<double>::quiet_NaN();
-  Integrator body(rocker, tolerance, result);
+  Integrator body(rocker, result, monitor);
   const double threshold = rocker.threshold();
   bool up = false;
   for (std::size_t i = 1; i < profile.time.size(); ++i) {

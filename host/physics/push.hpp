@@ -10,6 +10,8 @@
 // that takes.
 #pragma once
 
+#include "host/monitor.hpp"
+
 #include <vector>
 
 namespace cowgpu::physics {
@@ -25,12 +27,16 @@ struct Rocker {
 
   /// m g r sin(alpha)/L: a push below never lifts it, one above that lasts always tips it.
   double threshold() const;
-  /// Of a push too short to move it while it lasts: J L = I omega and I omega^2/2 = m g r (1 - cos alpha).
+  /// m g r (1 - cos alpha), of the lift to the balance, in J.
+  double least_energy() const;
+  /// Of a push too short to move it while it lasts: J L = I omega and I omega^2/2 = least_energy().
   double least_impulse() const;
   /// How long a constant push must last; infinite up to the threshold. It ends at the tilt theta_1 whose work is what is
   /// needed in all, F L theta_1 (or sin theta_1) = m g r (1 - cos alpha), and the time there is the integral of
   /// d theta/omega, by adaptive Gauss-Kronrod quadrature to 1e-13.
-  double least_duration(double force) const;
+  double least_duration(double force, const Monitor& monitor = silent_monitor()) const;
+  /// The force that just tips it within a time above 0: where least_duration() is that, by bisection to the last digit.
+  double least_force(double duration, const Monitor& monitor = silent_monitor()) const;
 };
 
 /// A force over time: straight lines between these points, jumps where a time occurs twice, 0 before and after. Times rise
@@ -44,7 +50,8 @@ struct Profile {
 
 Profile square_pulse(double force, double duration);
 
-/// Throws Error(bad_argument) for a profile that is empty, of unlike lengths, or breaks what is said there.
+/// Throws Error(bad_argument) for a profile that is empty, of unlike lengths, or breaks what is said there, and for an impulse
+/// that is no finite number.
 void check(const Profile& profile);
 
 enum class Outcome { never_lifted, fell_back, tipped };
@@ -60,8 +67,9 @@ struct PushResult {
 };
 
 /// Dormand and Prince's method of order 5(4), `tolerance` the error of a step relative to theta and omega, of those
-/// at least alpha/1000 and sqrt(m g r/I) alpha/1000. Where the push has ended, energy decides. Throws Error(bad_argument) as check() does, and for a rocker that has no
-/// threshold: alpha, lever, mass and inertia above 0.
-PushResult push(const Rocker& rocker, const Profile& profile, double tolerance = 1e-12);
+/// at least alpha/1000 and sqrt(m g r/I) alpha/1000. It ends where the body tips; where the push has ended, energy decides.
+/// Throws Error(bad_argument) as check() does, and for a rocker that has no threshold: alpha, lever, mass and inertia above
+/// 0; Error(check_failed) where a straight piece of the push takes more than two million steps; interrupted.
+PushResult push(const Rocker& rocker, const Profile& profile, const Monitor& monitor = silent_monitor());
 
 } // namespace cowgpu::physics

@@ -151,7 +151,7 @@ Vec3 facet_normal(const std::vector<Vec3>& corners, const Vec3& near) {
 
 } // namespace
 
-Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre) {
+Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre, const Monitor& monitor) {
   Roll roll;
   for (const Vec3& v : vertices) {
     roll.r.push_back(v - barycentre);
@@ -161,6 +161,7 @@ Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre) {
   const double noise = touching * roll.size;
   Attitude attitude;
   for (;; ++attitude.steps) {
+    check_stop(monitor);
     if (std::size_t(attitude.steps) > 4 * roll.r.size() + 64) no_facet("it rolls on and on");
     const std::vector<std::size_t> touch = roll.touching_ground();
     const auto [first, second] = level_axes(roll.down);

@@ -7,6 +7,7 @@
 // on a facet of the hull whose inside b is over: a least value of h.
 #pragma once
 
+#include "host/monitor.hpp"
 #include "host/types.hpp"
 
 #include <Eigen/Core>
@@ -26,8 +27,8 @@ struct Attitude {
 };
 
 /// Rolls a body down from the attitude as modelled. Throws Error(cannot_stand) where the barycentre comes down to the ground:
-/// it lies outside the convex hull of the vertices then (parts of negative mass), or they are flat.
-Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre);
+/// it lies outside the convex hull of the vertices then (parts of negative mass), or they are flat; interrupted.
+Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre, const Monitor& monitor = silent_monitor());
 
 /// Where a body touches the ground.
 struct Contact {

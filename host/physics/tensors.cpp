@@ -127,6 +127,16 @@ MassTensors about_centre(const MassTensors& tensors) {
   return result;
 }
 
+void check_weighs(const MassTensors& centred) {
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centred.inertia()).eigenvalues()[0];
+  if (centred.mass > 0 && least > 0) return;
+  const bool metric = centred.metric();
+  throw Error(Fault::bad_argument,
+              fmt::format("the body weighs {:.6g}{} and its least moment of inertia is {:.6g}{}: only one with both "
+                          "above 0 moves as bodies do",
+                          centred.mass, metric ? " kg" : "", least, metric ? " kg m^2" : ""));
+}
+
 MassTensors in_si(const MassTensors& tensors, double metres, double kilograms) {
   MassTensors result = tensors;
   result.mass *= kilograms;

@@ -50,6 +50,9 @@ std::array<std::complex<double>, 3> spherical_quadrupole(const Eigen::Matrix3d& 
 /// no such centre.
 MassTensors about_centre(const MassTensors& tensors);
 
+/// Throws Error(bad_argument) where the mass or a moment of inertia, about the centre of mass, is not above 0.
+void check_weighs(const MassTensors& centred);
+
 /// The same body in metres and kilograms: lengths times `metres`, masses times `kilograms`.
 MassTensors in_si(const MassTensors& tensors, double metres, double kilograms);
 

@@ -86,12 +86,14 @@ std::optional<double> literal_force(const TipBody& body, const Vec3& p, double s
 
 TipBody tip_body(const Body& body) {
   const MassTensors centred = about_centre(mass_tensors(body));
+  check_weighs(centred);
   TipBody result;
   result.mass = centred.mass;
   result.barycentre = body.centre_of_mass;
   result.inertia = centred.inertia();
   append(result, body.surface);
-  for (const Part& part : body.parts) append(result, part.surface);
+  for (const Part& part : body.parts)
+    if (part.density > 0) append(result, part.surface);
   return result;
 }
 
@@ -111,10 +113,10 @@ TipBody tip_body(const TriangleSurface& surface, double mass, std::string& note)
   return body;
 }
 
-Stance stand(TipBody body, const StandOptions& options) {
+Stance stand(TipBody body, const StandOptions& options, const Monitor& monitor) {
   Stance stance;
   if (!options.as_modelled) {
-    stance.attitude = settle(body.vertices, body.barycentre);
+    stance.attitude = settle(body.vertices, body.barycentre, monitor);
     turn(body, stance.attitude.rotation);
   }
   const double size = size_of(body);

@@ -15,6 +15,7 @@
 
 #include "host/mesh/body.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/monitor.hpp"
 #include "host/physics/feet.hpp"
 #include "host/physics/settle.hpp"
 
@@ -33,12 +34,13 @@ struct TipBody {
   double mass = 0;
   Vec3 barycentre = Vec3::Zero();
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero(); ///< about the barycentre
-  std::vector<Vec3> vertices;                        ///< of parts too
+  std::vector<Vec3> vertices;                        ///< of what is solid
   std::vector<Face> faces;
   bool smooth = false; ///< the triangles stand for a smooth surface: one that touches at a single point rolls there
 };
 
-/// Of a mesh with its parts. Throws what about_centre() throws.
+/// Of a mesh with its parts; those whose density is not above 0 are holes, which nothing stands on. Throws what about_centre()
+/// and check_weighs() throw.
 TipBody tip_body(const Body& body);
 
 /// Of a closed triangulation of a smooth surface, of uniform density with this mass: regions count by the winding number,
@@ -61,7 +63,7 @@ struct Stance {
 };
 
 /// Throws Error(cannot_stand) where the barycentre lies beside the contact patch, and what settle() throws.
-Stance stand(TipBody body, const StandOptions& options);
+Stance stand(TipBody body, const StandOptions& options, const Monitor& monitor = silent_monitor());
 
 /// The side that a body falls to: z is its right.
 enum class Side { left, right };

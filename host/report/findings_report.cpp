@@ -40,7 +40,7 @@ std::string row_text(const Vec3& v) {
 }
 
 struct ToText {
-  std::string operator()(std::monostate) const { return "not known"; }
+  std::string operator()(std::monostate) const { return "-"; }
   std::string operator()(double value) const { return fmt::format("{:.12g}", shown_number(value)); }
   std::string operator()(const std::string& value) const { return value; }
   std::string operator()(bool value) const { return value ? "yes" : "no"; }
@@ -80,7 +80,6 @@ ordered_json table_json(const Table& table) {
 // Cells are shorter than lines of their own: six digits tell what a table is for, and the JSON has all of them.
 std::string cell_text(const Value& value) {
   if (const double* number = std::get_if<double>(&value)) return fmt::format("{:.6g}", shown_number(*number));
-  if (std::holds_alternative<std::monostate>(value)) return "-";
   return std::visit(ToText{}, value);
 }
 
@@ -145,7 +144,9 @@ void write_findings(const Findings& findings, const Sink& sink) {
   for (const Finding& row : findings.rows) {
     const bool matrix = std::holds_alternative<Eigen::Matrix3d>(row.value);
     const std::string value = std::visit(ToText{}, row.value);
-    if (matrix)
+    if (std::holds_alternative<std::monostate>(row.value))
+      sink(fmt::format("  {:<38} {}\n", row.label, row.missing));
+    else if (matrix)
       sink(fmt::format("  {}{}{}\n", row.label, row.unit.empty() ? "" : ", " + row.unit, value));
     else
       sink(fmt::format("  {:<38} {}{}\n", row.label, value, row.unit.empty() ? "" : " " + row.unit));
