@@ -80,6 +80,7 @@ struct Application {
   const char* summary;
   const char* footer;
   Solve (*add)(CLI::App& command, Common& common);
+  bool paper_of_formulas = false; ///< what it lays beside the paper holds for every body
 };
 
 Solve add_tensors(CLI::App& command, Common& common);
@@ -88,7 +89,5 @@ Solve add_radiate(CLI::App& command, Common& common);
 Solve add_tides(CLI::App& command, Common& common);
 Solve add_drop(CLI::App& command, Common& common);
 Solve add_tip(CLI::App& command, Common& common);
-Solve add_tides(CLI::App& command, Common& common);
-Solve add_drop(CLI::App& command, Common& common);
 
 } // namespace cowgpu::cli

@@ -19,7 +19,8 @@ struct Finding {
   std::string key;   ///< in JSON: "power_W"
   std::string label; ///< on the screen: "radiated power"
   Value value;
-  std::string unit = {}; ///< "W"; in JSON the member `units` has it under the same key
+  std::string unit = {};            ///< "W"; in JSON the member `units` has it under the same key
+  std::string absent = "not known"; ///< on the screen for a value that is not known; empty: no line
 };
 
 /// A column of a table; the name is lower case with underscores, for JSON and CSV.
@@ -36,7 +37,8 @@ struct Table {
   std::string label; ///< on the screen, above the columns
   std::vector<Column> columns;
   std::vector<std::vector<Value>> rows;
-  bool as_entries = false; ///< in JSON instead a list of objects with the columns as members; units among those of Findings
+  bool as_entries =
+      false; ///< in JSON instead a list of objects with the columns as members; units among those of Findings
 };
 
 /// A number that a paper prints, beside ours.

@@ -143,6 +143,10 @@ void write_findings(const Findings& findings, const Sink& sink) {
   sink(findings.title + "\n");
   for (const std::string& note : findings.notes) sink("note: " + note + "\n");
   for (const Finding& row : findings.rows) {
+    if (std::holds_alternative<std::monostate>(row.value)) {
+      if (!row.absent.empty()) sink(fmt::format("  {:<38} {}\n", row.label, row.absent));
+      continue;
+    }
     const bool matrix = std::holds_alternative<Eigen::Matrix3d>(row.value);
     const std::string value = std::visit(ToText{}, row.value);
     if (matrix)
