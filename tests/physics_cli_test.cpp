@@ -168,7 +168,7 @@ TEST_CASE("a body lighter than nothing and a spin slower than anything are refus
   std::vector<std::string> slow = box, slower = box, tiny = box;
   slow.insert(slow.end(), {"--period", "100Gyr"});
   slower.insert(slower.end(), {"--period", "1e300s"});
-  tiny[3] = "1e-40m";
+  tiny[3] = "1e-16m";
   tiny.insert(tiny.end(), {"--period", "100Gyr"});
   CHECK(answer(slow)["power_W"].get<double>() > 0);
   CHECK(answer(slow)["omega_after"].get<std::string>().size() < 200);
@@ -177,6 +177,8 @@ TEST_CASE("a body lighter than nothing and a spin slower than anything are refus
   slower[slower.size() - 2] = "--omega";
   refused(slower, 2, "--omega 1e-20rad/s");
   refused(tiny, 2, "no number to compute with");
+  tiny[3] = "1e-40m";
+  refused(tiny, 2, "too small or too large");
 }
 
 TEST_CASE("the paper's recipe lays its numbers beside no other body, however alike", "[physics][cli]") {

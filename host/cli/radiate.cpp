@@ -138,9 +138,14 @@ Radiation radiation(const PhysicsInput& input, const PhysicsOptions& common, con
   r.unit_kg = placed.unit_kg;
   r.square = quadrupole_square(r.tensors.quadrupole, r.axis);
   const double scale = r.tensors.quadrupole.squaredNorm(), size = r.tensors.trace.value_or(0);
+  const double largest = std::max(scale, size * size);
+  if ((size > 0 || !r.tensors.quadrupole.isZero(0)) && !std::isnormal(largest))
+    throw Error(Fault::bad_argument,
+                "the body is too small or too large for the squares of its tensors to be computed: "
+                "give another unit of length, or another density");
   r.agreement =
       std::abs(by_multipoles(input, r.tensors, r.axis) - r.square) / std::max(64 * scale, 1e-12 * size * size);
-  if (r.square <= 1e-26 * std::max(scale, size * size)) {
+  if (r.square <= 1e-26 * largest) {
     r.square = 0;
     notes.push_back("turned about this axis the quadrupole stays as it is, but for rounding: it radiates nothing");
   }

@@ -180,23 +180,7 @@ LongVec3 relative_turn(const State& y) {
   return length > 0 ? LongVec3(sine / length * (2 * std::atan2(length, cosine))) : sine;
 }
 
-} // namespace
-
-LongMat3 rotation_of(long double w, const LongVec3& v) {
-  const Real s = 1 + w, norm = s * s + v.squaredNorm();
-  LongMat3 cross;
-  cross << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-  return LongMat3::Identity() + 2 / norm * (s * cross + cross * cross);
-}
-
-long double radial_fall_time(long double gm, long double r, long double d) {
-  const Real part = d / r;
-  return std::sqrt(r / (2 * gm)) * r * (std::asin(std::sqrt(part)) + std::sqrt(part * (1 - part)));
-}
-
-namespace {
-
-constexpr double fastest_rim = 1000, most_turns = 1e5;
+constexpr double fastest_rim = 1000, most_turns = 1e4;
 
 void check_height(const DropProblem& problem) {
   if (problem.vertices.empty()) throw Error(Fault::bad_argument, "a body without a surface has no lowest point");
@@ -210,7 +194,7 @@ void check_height(const DropProblem& problem) {
                             problem.height, problem.planet.radius));
   if (problem.planet.hill_radius > 0 && problem.planet.radius + problem.height > problem.planet.hill_radius)
     throw Error(Fault::bad_argument,
-                fmt::format("a height of {} m is outside the {}'s Hill sphere, {:.4g} m, where nothing falls to it "
+                fmt::format("a height of {:.6g} m is outside the {}'s Hill sphere, {:.4g} m, where nothing falls to it "
                             "alone: give a lower --height",
                             problem.height, problem.planet.name, problem.planet.hill_radius));
 }
@@ -232,6 +216,18 @@ void check_spin(const Fall& fall, const State& start, Real way, Real time) {
 }
 
 } // namespace
+
+LongMat3 rotation_of(long double w, const LongVec3& v) {
+  const Real s = 1 + w, norm = s * s + v.squaredNorm();
+  LongMat3 cross;
+  cross << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return LongMat3::Identity() + 2 / norm * (s * cross + cross * cross);
+}
+
+long double radial_fall_time(long double gm, long double r, long double d) {
+  const Real part = d / r;
+  return std::sqrt(r / (2 * gm)) * r * (std::asin(std::sqrt(part)) + std::sqrt(part * (1 - part)));
+}
 
 DropResult drop(const DropProblem& problem, Monitor& monitor) {
   check_height(problem);

@@ -46,7 +46,7 @@ struct DropResult {
 /// start, until the first vertex touches the sphere of the ground: no time step is longer than the body needs to reach it.
 /// Throws Error(bad_argument) for a height at which the body touches already, or that is not finite, over 1e6 radii of the
 /// ground or beyond the planet's Hill sphere, for a body without vertices, and for a spin that moves its vertices more than
-/// 1000 times faster than it falls, or turns it more than 1e5 times, which takes too many steps; interrupted.
+/// 1000 times faster than it falls, or turns it more than 1e4 times, which takes too many steps; interrupted.
 DropResult drop(const DropProblem& problem, Monitor& monitor = silent_monitor());
 
 /// Time in s of a radial fall from rest at r over the distance d < r:
