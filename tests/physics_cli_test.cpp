@@ -141,6 +141,60 @@ TEST_CASE("a body that is symmetric about its axis spins for ever, and one witho
   CHECK(std::abs(plain["octupole_square_over_omega8"].get<double>()) < 1e-25);
 }
 
+TEST_CASE("rows without a value have a reason in a note and no line of their own", "[physics][cli]") {
+  const ProgramRun plain = run_program({"radiate", "builtin:box:1,2,3"});
+  CHECK(plain.exit_code == 0);
+  CHECK_THAT(plain.out, !Contains("not known") && !Contains("unit of length ") && Contains("no unit was stated"));
+  const ProgramRun cube = run_program({"radiate", "builtin:box:1,1,1", "--length", "1m", "--density", "1g/cm3"});
+  CHECK_THAT(cube.out, Contains("never") && !Contains("inf"));
+  const std::vector<std::string> fall = {"drop",   "builtin:box:1,2,3", "--length", "3m", "--density",
+                                         "1g/cm3", "--height",          "9m"};
+  std::vector<std::string> spun = fall;
+  spun.insert(spun.end(), {"--spin", "x,1rad/s"});
+  CHECK_THAT(run_program(fall).out, Contains("by torque t^2/2"));
+  CHECK_THAT(run_program(spun).out, !Contains("by torque t^2/2") && !Contains("not known"));
+}
+
+TEST_CASE("a body lighter than nothing and a spin slower than anything are refused by name", "[physics][cli]") {
+  for (const char* command : {"radiate", "tides", "drop"}) {
+    std::vector<std::string> all = {command, "builtin:box:1,2,3", "--length-unit", "1m", "--density", "-1000"};
+    if (command == std::string("tides")) all.insert(all.end(), {"--orbit", "7000km"});
+    if (command == std::string("drop")) all.insert(all.end(), {"--height", "10m"});
+    refused(all, 2, "weighs -6000 kg");
+    refused(all, 2, "density");
+  }
+  refused({"radiate", "builtin:box:1,2,3", "--density", "-2"}, 2, "weighs -12:");
+  const std::vector<std::string> box = {"radiate", "builtin:box:1,2,3", "--length-unit", "1m", "--density", "1g/cm3"};
+  std::vector<std::string> slow = box, slower = box, tiny = box;
+  slow.insert(slow.end(), {"--period", "100Gyr"});
+  slower.insert(slower.end(), {"--period", "1e300s"});
+  tiny[3] = "1e-16m";
+  tiny.insert(tiny.end(), {"--period", "100Gyr"});
+  CHECK(answer(slow)["power_W"].get<double>() > 0);
+  CHECK(answer(slow)["omega_after"].get<std::string>().size() < 200);
+  refused(slower, 2, "slower than a turn in 400 Gyr");
+  slower.back() = "1e-20rad/s";
+  slower[slower.size() - 2] = "--omega";
+  refused(slower, 2, "--omega 1e-20rad/s");
+  refused(tiny, 2, "no number to compute with");
+  tiny[3] = "1e-40m";
+  refused(tiny, 2, "too small or too large");
+}
+
+TEST_CASE("the paper's recipe lays its numbers beside no other body, however alike", "[physics][cli]") {
+  for (std::vector<std::string> command : {std::vector<std::string>{"tensors"}, {"radiate"}, {"tip"}}) {
+    command.insert(command.end(), {"builtin:box:1,2,3", "--recipe", "paper"});
+    const json found = answer(command);
+    INFO(command[0]);
+    CHECK(found.count("paper") == 0);
+    CHECK(found["notes"].dump().find("none to compare") != std::string::npos);
+  }
+  const json waves = answer({"radiate", "builtin:box:1,2,3", "--recipe", "paper"});
+  CHECK(waves["length_unit_m"] == 2.39);
+  if (!benchmark_cow()) return skip_without_cow();
+  CHECK(answer({"tensors", "benchmark", "--recipe", "paper", "--rotate", "10,0,0"}).count("paper") == 0);
+}
+
 TEST_CASE("the paper's recipe shows the paper's numbers beside ours", "[physics][cli][paper]") {
   if (!benchmark_cow()) return skip_without_cow();
   const json waves = answer({"radiate", "--recipe", "paper"});
@@ -181,6 +235,12 @@ TEST_CASE("tides of a box in orbit: closed forms, from the mesh and from its coe
   CHECK(a["capture_half_width_rad_per_s"].get<double>() ==
         Approx(n * std::sqrt(3 * (middle - least) / most)).epsilon(1e-13));
   CHECK(a["equilibria"]["rows"].size() == 6);
+  // In other units, where each degree has a scale of its own.
+  for (auto* how : {&of_mesh, &of_file})
+    for (std::string& word : *how) word = word == "1m" ? "7m" : word == "y:45" ? "y:25" : word;
+  const json c = answer(of_mesh), d = answer(of_file);
+  CHECK(c["torque_higher"][1].get<double>() != 0);
+  CHECK(d["torque_higher"][1].get<double>() == Approx(c["torque_higher"][1].get<double>()).epsilon(1e-10));
   CHECK(a["equilibria"]["rows"][0][3] == "stable (Lagrange)");
   for (const char* key :
        {"pitch_period_s", "roll_yaw_slow_period_s", "roll_yaw_fast_period_s", "largest_torque", "mass_kg"})
@@ -246,6 +306,13 @@ TEST_CASE("tides and drop name what they cannot use", "[physics][cli]") {
   refused(with(tides, {"--orbit", "1au", "--mass", "jupiter"}), 2, "earth, moon and sun");
   refused(with(tides, {"--orbit", "1au", "--attitude", "north"}), 2, "--attitude");
   refused(with(tides, {"--orbit", "1au", "--love", "1"}), 2, "--quality");
+  for (const char* love : {"nan", "inf", "abc", "0.1kg", "0", "1e300"}) {
+    const auto wrong = with(tides, {"--orbit", "7000km", "--spin", "1rad/s", "--quality", "10", "--love", love});
+    refused(wrong, 2, "--love");
+    CHECK_THAT(run_program(wrong).err, !Contains("lb"));
+  }
+  refused(with(tides, {"--orbit", "7000km", "--spin", "1rad/s", "--love", "0.1", "--quality", "1e300"}), 2,
+          "--quality");
   refused(with(tides, {"--orbit", "1au", "--order", "1"}), 2, "--order");
   refused(with(drop, {"--height", "0.1m"}), 2, "touches the ground already");
   refused(with(drop, {"--height", "-1m"}), 2, "above 0");

@@ -77,6 +77,19 @@ TEST_CASE("of another body nothing is compared", "[reproduce]") {
   CHECK(rows[1].verdict == Verdict::not_computed);
 }
 
+TEST_CASE("what is of a body that the paper has no numbers about is not compared, and not missing", "[reproduce]") {
+  const Documents documents = {
+      {"tensors.json", {{"mass", 1}}}, {"radiate.json", {{"omega_after", "0.5"}}}, {"tip.json", {{"force_N", 1}}}};
+  std::vector<Row> rows = paper_rows(documents);
+  not_the_papers_body(rows, "a horse");
+  for (const Row& row : rows) {
+    const bool here = row.table == "tensors" || row.table == "radiation" || row.table == "tipping";
+    INFO(row.table << ": " << row.item);
+    CHECK(row.verdict == (here ? Verdict::not_compared : Verdict::not_computed));
+    if (here) CHECK(row.reason == "ours is of a horse");
+  }
+}
+
 TEST_CASE("reproduce goes on where it was", "[reproduce][cli]") {
   const TemporaryFolder folder;
   const std::vector<std::string> of_box = {"--mesh", "builtin:box:3,2,1", "--only", "mass,tensors"};

@@ -244,7 +244,13 @@ TEST_CASE("the time to lock is omega r^6 I Q/(3 G M^2 k2 R^5)", "[tides]") {
   const double expected = 1e-4 * std::pow(distance, 6) * 0.4 * mass * radius * radius * 30 /
                           (3 * gravitational_constant_si * m * m * 0.024 * std::pow(radius, 5));
   CHECK(locking_time(body, orbit, 1e-4, 0.024, 30) == Approx(expected).epsilon(1e-12));
-  CHECK_THROWS_AS(locking_time(body, orbit, 1e-4, 0, 30), Error);
+  for (const double love : {0.0, -0.1, 1.6, 1e300, std::nan("")})
+    CHECK_THROWS_WITH(locking_time(body, orbit, 1e-4, love, 30), Catch::Contains("k2") && Catch::Contains("1.5"));
+  for (const double quality : {0.0, 0.5, 1e13, 1e300, std::nan("")})
+    CHECK_THROWS_WITH(locking_time(body, orbit, 1e-4, 0.024, quality), Catch::Contains("from 1 to 1e+12"));
+  CHECK_THROWS_WITH(locking_time(body, orbit, 1e-4, 1e-300, 1e12), Catch::Contains("too long"));
+  CHECK_THROWS_WITH(locking_time(body, orbit, 1e-310, 1, 1), Catch::Contains("too short"));
+  CHECK(locking_time(body, orbit, 1e-4, 1.5, 1) > 0);
 }
 
 TEST_CASE("orbits through the body, of no size or about nothing are refused", "[tides]") {

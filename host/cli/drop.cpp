@@ -77,7 +77,7 @@ std::vector<Vec3> corners_of(const ClosedSurface& surface) {
   return corners;
 }
 
-Drop solve_drop(const PhysicsInput& input, const PhysicsOptions& common, const Options& options) {
+Drop solve_drop(const PhysicsInput& input, const PhysicsOptions& common, const Options& options, ProgressStyle style) {
   Drop d;
   d.feet = parse_axis("--feet", options.feet);
   d.problem.height = parse_quantity("--height", options.height, Dimension::length, "10m").value;
@@ -96,7 +96,8 @@ Drop solve_drop(const PhysicsInput& input, const PhysicsOptions& common, const O
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (Vec3& v : vertices) v -= input.body->centre_of_mass;
   d.problem.vertices = vertices;
-  d.result = drop(d.problem, ConsoleMonitor(ProgressStyle::none));
+  ConsoleMonitor monitor(style);
+  d.result = drop(d.problem, monitor);
   d.touch = vertices[d.result.touching];
   d.problem.vertices = {};
   d.tilt_before = tilt(d.problem.attitude, d.feet);
@@ -116,7 +117,7 @@ void add_notes(const Drop& d, std::vector<std::string>& notes) {
     notes.push_back("the body is no small one beside the earth, which does not move here");
 }
 
-Findings solve(const PhysicsOptions& common, const Options& options) {
+Findings solve(const PhysicsOptions& common, const Options& options, ProgressStyle style) {
   if (is_coefficient_file(common.body.mesh))
     throw Error(
         Fault::file_format,
@@ -124,7 +125,7 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
                     common.body.mesh));
   const PhysicsInput input = load_free_body(common);
   Findings found = findings_about(input, common);
-  const Drop d = solve_drop(input, common, options);
+  const Drop d = solve_drop(input, common, options, style);
   const DropResult& r = d.result;
   add_notes(d, found.notes);
   const bool spins = d.problem.spin.norm() > 0;
@@ -140,10 +141,10 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
       {"touch_count", "corners as low", double(r.as_low)},
       {"turn_rad", "turned by gravity", d.turn, "rad"},
       {"turn_deg", "the same", double(r.turn.norm() / degree), "degrees"},
-      {"turn_axis", "about (x, up, z)", d.turn > 0 ? vector(LongVec3(r.turn.normalized())) : Value()},
-      {"turn_first_order_rad", "by torque t^2/2", spins ? Value() : Value(first), "rad"},
+      {"turn_axis", "about (x, up, z)", d.turn > 0 ? vector(LongVec3(r.turn.normalized())) : Value(), "", ""},
+      {"turn_first_order_rad", "by torque t^2/2", spins ? Value() : Value(first), "rad", ""},
       {"turn_first_order_difference", "which differs by, of it",
-       !spins && first > 0 ? Value(double((r.turn - r.first_order).norm() / r.first_order.norm())) : Value()},
+       !spins && first > 0 ? Value(double((r.turn - r.first_order).norm() / r.first_order.norm())) : Value(), "", ""},
       {"torque_N_m", "torque at the start, body's axes", vector(r.torque), "N m"},
       {"spin_rad_per_s", "spin at the start, body's axes", d.problem.spin, "rad/s"},
       {"mass_kg", "mass", d.problem.body.mass, "kg"},
@@ -157,16 +158,16 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
       {"spin_for_half_turn_rpm", "the same", half_turn * 30 / std::numbers::pi, "rpm"},
       {"spin_for_feet_rad_per_s", "spin that brings the feet down", double(d.tilt_before * degree) / time, "rad/s"},
       {"order", "highest degree", double(d.problem.body.order)},
-      {"energy_drift", "energy off, of the kinetic", double(r.energy_drift)},
-      {"momentum_drift", "angular momentum off", double(r.momentum_drift), "of its larger part"}};
+      {"energy_drift", "energy off, of that of motion", double(r.energy_drift)},
+      {"momentum_drift", "angular momentum off", double(r.momentum_drift), "of what gravity brings such a size"}};
   return found;
 }
 
 } // namespace
 
-Solve add_drop(CLI::App& command, Common&) {
+Solve add_drop(CLI::App& command, Common& program) {
   const auto options = std::make_shared<Options>();
-  command.add_option("--height", options->height, "Of the centre of mass above the ground: 10m")
+  command.add_option("--height", options->height, "Of the centre of mass above the ground, with its unit: 10m")
       ->type_name("LENGTH")
       ->required();
   command
@@ -185,7 +186,7 @@ Solve add_drop(CLI::App& command, Common&) {
       ->type_name("L")
       ->check(CLI::Range(2, 64))
       ->capture_default_str();
-  return [options](const PhysicsOptions& common) { return solve(common, *options); };
+  return [options, &program](const PhysicsOptions& common) { return solve(common, *options, program.style()); };
 }
 
 } // namespace cowgpu::cli

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
+#include "host/io/mesh_source.hpp"
 #include "host/physics/paper.hpp"
 #include "host/physics/potential.hpp"
 #include "host/report/findings_report.hpp"
@@ -32,7 +33,7 @@ constexpr std::array applications = {
                 "          cowgpu potential benchmark --sphere 1.5R --resolution 61 -o sphere.nc\n"
                 "          cowgpu potential benchmark --plane z,0,1,101 --inside exact -o plane.csv\n"
                 "          cowgpu potential benchmark --errors --plot errors.svg",
-                add_potential},
+                add_potential, true},
     Application{"radiate", "Gravitational waves from a body that turns: their power, and how long until it has stopped",
                 "Examples: cowgpu radiate benchmark --length 2.5m --density 1g/cm3 --axis y --omega 1rad/s\n"
                 "          cowgpu radiate benchmark --recipe paper",
@@ -45,11 +46,11 @@ constexpr std::array applications = {
         "          cowgpu tides cow.json --length-unit 2.4m --density 1g/cm3 --orbit 42164km --love 0.1 --quality 10 "
         "--spin 1rad/s",
         add_tides},
-    Application{"drop", "Whether a body that is dropped lands on its feet: its fall, turned by the gradient of gravity",
-                "Examples: cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude upside-down\n"
-                "          cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude on-side --spin "
-                "x,10rpm",
-                add_drop},
+    Application{
+        "drop", "Whether a body that is dropped lands on its feet: its fall, turned by the gradient of gravity",
+        "Examples: cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude upside-down\n"
+        "          cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude on-side --spin x,10rpm",
+        add_drop},
     Application{"tip", "What tips a standing body over onto its side: the least force, and the least push that lasts",
                 "Examples: cowgpu tip benchmark --length 2.5m --density 1g/cm3 --friction 0.6 --push 5000N:0.1s\n"
                 "          cowgpu tip benchmark --length 2.5m --density 1g/cm3 --of stretch --order 0..8 --json\n"
@@ -70,6 +71,17 @@ void take_paper_body(CLI::App& command, BodyOptions& body) {
   if (command.get_option("--density")->count() == 0) body.density = physics::paper::density;
 }
 
+// Its numbers are those of its body as it stands in its file.
+void keep_paper_to_its_body(const PhysicsOptions& options, physics::Findings& findings) {
+  const BodyOptions& body = options.body;
+  if (findings.input_sha256 == benchmark_sha256 && body.axes.empty() && body.rotate.empty() && body.parts.empty())
+    return;
+  findings.paper.clear();
+  findings.notes.push_back(fmt::format("--recipe paper: units and settings are the paper's, but its numbers are about "
+                                       "its own mesh as it is, and {} is none to compare with them",
+                                       body.mesh));
+}
+
 void add_application(CLI::App& app, Common& common, const Application& application) {
   CLI::App* command = app.add_subcommand(application.name, application.summary);
   const auto options = std::make_shared<PhysicsOptions>();
@@ -81,7 +93,7 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
   command
       ->add_option("--recipe", options->recipe,
                    "default, or paper: as Higher multipoles of the cow has it (benchmark, 2.39 m, 1 g/cm3), with its "
-                   "numbers beside ours")
+                   "numbers beside those of its mesh")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
   command->add_flag("--json", options->json, fmt::format("As JSON (data/schemas/cowgpu.{}.v1.json)", application.name));
@@ -89,7 +101,8 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
   command->callback([=, &common] {
     options->density_given = options->paper() || command->get_option("--density")->count() > 0;
     if (options->paper()) take_paper_body(*command, options->body);
-    const physics::Findings findings = solve(*options);
+    physics::Findings findings = solve(*options);
+    if (options->paper() && !application.paper_of_formulas) keep_paper_to_its_body(*options, findings);
     check_stop(ConsoleMonitor(ProgressStyle::none));
     if (options->json)
       write_stdout(json_text(findings_json(findings, fmt::format("cowgpu.{}.v1", application.name), common.command)) +
@@ -223,9 +236,7 @@ PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& op
   if (placed.metric || !stated.metric) return placed;
   const double amount = stated.density / set.density.value_or(1) * std::pow(stated.metres, 3);
   placed.metric = true;
-  placed.moments.origin *= stated.metres;
-  placed.moments.reference_radius *= stated.metres;
-  for (auto& q : placed.moments.values) q *= amount;
+  placed.moments = physics::in_si(std::move(placed.moments), stated.metres, amount);
   return placed;
 }
 

@@ -84,6 +84,7 @@ struct Application {
   const char* summary;
   const char* footer;
   Solve (*add)(CLI::App& command, Common& common);
+  bool paper_of_formulas = false; ///< what it lays beside the paper holds for every body
 };
 
 Solve add_tensors(CLI::App& command, Common& common);

@@ -23,13 +23,25 @@ struct Options {
   bool octupole = false;
 };
 
+// A body that turns slower has not turned once in 400 Gyr.
+constexpr double slowest = 5e-19;
+
+double check_rate(double omega, const char* option, const std::string& text) {
+  if (!(omega >= slowest))
+    throw Error(Fault::bad_argument,
+                fmt::format("{} {}: {:.3g} rad/s is slower than a turn in 400 Gyr, {} rad/s, which is as slow as this "
+                            "goes",
+                            option, text, omega, slowest));
+  return omega;
+}
+
 double parse_omega(const Options& options, std::vector<std::string>& notes) {
   if (!options.period.empty()) {
     if (!options.omega.empty())
       throw Error(Fault::bad_argument, "--omega and --period both say how fast the body turns; leave one out");
     const double period = parse_quantity("--period", options.period, Dimension::time, "24h").value;
     if (!(period > 0)) throw Error(Fault::bad_argument, fmt::format("--period {}: it must be above 0", options.period));
-    return 2 * std::numbers::pi / period;
+    return check_rate(2 * std::numbers::pi / period, "--period", options.period);
   }
   const std::string text = options.omega.empty() ? "1rad/s" : options.omega;
   const Measure omega = parse_quantity("--omega", text, Dimension::angular_rate, "1rad/s, 3rpm or 1Hz");
@@ -41,7 +53,7 @@ double parse_omega(const Options& options, std::vector<std::string>& notes) {
     notes.push_back(fmt::format("{} is read as an angular frequency, 1 Hz being 1 rad/s, as the paper has it; --period "
                                 "1s is one turn a second",
                                 text));
-  return omega.value;
+  return check_rate(omega.value, "--omega", text);
 }
 
 double parse_time(const Options& options) {
@@ -98,6 +110,21 @@ void check_wobble(const Eigen::Matrix3d& inertia, const Vec3& axis, std::vector<
                     angle));
 }
 
+void check_mass(const MassTensors& tensors, const Vec3& axis) {
+  const char* mass_unit = tensors.metric() ? " kg" : "";
+  const char* moment_unit = tensors.metric() ? " kg m^2" : "";
+  if (!(tensors.mass > 0))
+    throw Error(Fault::bad_argument, fmt::format("the body weighs {:.6g}{}: only one with a mass above 0 spins down; "
+                                                 "change --density or the density of a --part",
+                                                 tensors.mass, mass_unit));
+  if (!tensors.trace) return;
+  if (const double moment = axis.dot(tensors.inertia() * axis); !(moment > 0))
+    throw Error(Fault::bad_argument,
+                fmt::format("the body weighs {:.6g}{}, but its moment of inertia about the axis is {:.6g}{}: only one "
+                            "with both above 0 spins down; change --density or the density of a --part",
+                            tensors.mass, mass_unit, moment, moment_unit));
+}
+
 Radiation radiation(const PhysicsInput& input, const PhysicsOptions& common, const Options& options,
                     std::vector<std::string>& notes) {
   Radiation r;
@@ -106,13 +133,19 @@ Radiation radiation(const PhysicsInput& input, const PhysicsOptions& common, con
   r.time = parse_time(options);
   const PlacedTensors placed = placed_tensors(input, common);
   r.tensors = about_centre(placed.tensors);
+  check_mass(r.tensors, r.axis);
   r.unit_m = placed.unit_m;
   r.unit_kg = placed.unit_kg;
   r.square = quadrupole_square(r.tensors.quadrupole, r.axis);
   const double scale = r.tensors.quadrupole.squaredNorm(), size = r.tensors.trace.value_or(0);
+  const double largest = std::max(scale, size * size);
+  if ((size > 0 || !r.tensors.quadrupole.isZero(0)) && !std::isnormal(largest))
+    throw Error(Fault::bad_argument,
+                "the body is too small or too large for the squares of its tensors to be computed: "
+                "give another unit of length, or another density");
   r.agreement =
       std::abs(by_multipoles(input, r.tensors, r.axis) - r.square) / std::max(64 * scale, 1e-12 * size * size);
-  if (r.square <= 1e-26 * std::max(scale, size * size)) {
+  if (r.square <= 1e-26 * largest) {
     r.square = 0;
     notes.push_back("turned about this axis the quadrupole stays as it is, but for rounding: it radiates nothing");
   }
@@ -138,6 +171,11 @@ Radiation radiation(const PhysicsInput& input, const PhysicsOptions& common, con
   }
   check_speed(r, notes);
   r.power = quadrupole_power(r.square, r.omega);
+  if (r.square > 0 && !std::isnormal(double(r.power)))
+    throw Error(Fault::bad_argument,
+                fmt::format("at {:.3g} rad/s this body radiates {:.3g} W, which is no number to compute with: give "
+                            "another --omega or --period, or another unit of length",
+                            r.omega, r.power));
   if (r.moment) r.spin = spin_down(*r.moment, r.power, r.omega, r.time);
   return r;
 }
@@ -208,11 +246,9 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
   const PhysicsInput input = load_free_body(common);
   Findings found = findings_about(input, common);
   const Radiation r = radiation(input, common, options, found.notes);
-  const bool si = r.tensors.metric();
+  const bool si = r.tensors.metric(), lasts = r.spin && std::isfinite(r.spin->timescale);
   const auto of_spin = [&](auto member) { return r.spin ? Value(double(*r.spin.*member)) : Value(); };
   const Value power = si ? Value(double(r.power)) : Value(), erg = si ? Value(double(r.power * 1e7L)) : Value();
-  Value years;
-  if (r.spin) years = double(r.spin->timescale / julian_year);
   found.rows = {
       {"axis", "axis", r.axis},
       {"omega_rad_per_s", "angular frequency", r.omega, "rad/s"},
@@ -228,12 +264,14 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
       {"moment_of_inertia", "moment of inertia about the axis", value(r.moment),
        si ? "kg m^2" : "density * length^5, in the mesh's length unit"},
       {"energy_J", "energy of rotation", of_spin(&SpinDown::energy), "J"},
-      {"timescale_s", "timescale, energy over power", of_spin(&SpinDown::timescale), "s"},
-      {"timescale_yr", "the same", years, "yr"},
+      {"timescale_s", "timescale, energy over power", lasts ? of_spin(&SpinDown::timescale) : Value(), "s"},
+      {"timescale_yr", "the same", lasts ? Value(double(r.spin->timescale / julian_year)) : Value(), "yr"},
       {"time_s", "time since the start", r.time, "s"},
       {"deficit", "1 - omega/omega at the start", of_spin(&SpinDown::deficit)},
       {"omega_after", "omega after that time", r.spin ? Value(r.spin->omega) : Value(), "rad/s"},
   };
+  // A note says why what is not known is not.
+  for (Finding& row : found.rows) row.missing = r.spin && row.key == "timescale_s" ? "never: nothing is radiated" : "";
   add_octupole(r, found);
   if (common.paper() && r.spin) found.paper = beside_paper(r);
   return found;
@@ -247,10 +285,12 @@ Solve add_radiate(CLI::App& command, Common&) {
       ->type_name("AXIS")
       ->capture_default_str();
   command
-      .add_option("--omega", options->omega,
-                  "Angular frequency: 1rad/s (default), 90deg/s, 3rpm; 1Hz and 1/s are 1 rad/s, as in the paper")
+      .add_option(
+          "--omega", options->omega,
+          "Angular frequency with its unit: 90deg/s, 3rpm; 1Hz and 1/s are 1 rad/s, as in the paper; without this "
+          "option 1rad/s")
       ->type_name("RATE");
-  command.add_option("--period", options->period, "Instead: the time of one turn, 1s")->type_name("TIME");
+  command.add_option("--period", options->period, "Instead: the time of one turn with its unit, 1s")->type_name("TIME");
   command.add_option("--start", options->start, "When it began to turn, after the Big Bang (Julian years)")
       ->type_name("TIME")
       ->capture_default_str();

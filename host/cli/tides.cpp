@@ -19,7 +19,8 @@ constexpr int default_order = 6;
 constexpr const char* principal_names[] = {"A", "B", "C"};
 
 struct Options {
-  std::string orbit, mass = "earth", attitude = "aligned", love, quality, spin;
+  std::string orbit, mass = "earth", attitude = "aligned", spin;
+  std::optional<double> love, quality;
   int order = 0; // 0: not given
 };
 
@@ -27,12 +28,6 @@ struct Options {
 LongMat3 aligned(const PrincipalAxes& principal) {
   const LongMat3 axes = principal.axes.cast<long double>();
   return axes.transpose() * (3 * LongMat3::Identity() - axes * axes.transpose()) / 2;
-}
-
-double parse_number(const char* option, const std::string& text) {
-  const Measure measure = parse_measure(option, text, Dimension::mass);
-  if (measure.has_unit) throw Error(Fault::bad_argument, fmt::format("{} {}: it has no unit", option, text));
-  return measure.value;
 }
 
 Value period(double rate) {
@@ -100,18 +95,16 @@ Table shift_table(const Tides& t) {
 }
 
 void add_locking(const Tides& t, const Options& options, Findings& found) {
-  if (options.love.empty() && options.quality.empty() && options.spin.empty()) return;
   const double spin =
       options.spin.empty() ? 0 : parse_positive("--spin", options.spin, Dimension::angular_rate, "1rad/s");
   if (spin > 0 && !is_isotropic(t.principal)) {
     const double half = capture_half_width(t.principal, t.orbit);
     found.rows.push_back({"caught", "a body with this spin about C is caught", std::abs(spin - t.orbit.rate) < half});
   }
-  if (options.love.empty() && options.quality.empty()) return;
-  if (options.love.empty() || options.quality.empty() || options.spin.empty())
+  if (!options.love && !options.quality) return;
+  if (!options.love || !options.quality || options.spin.empty())
     throw Error(Fault::bad_argument, "the time to lock needs all of --love, --quality and --spin");
-  const double time = locking_time(t.body, t.orbit, spin, parse_number("--love", options.love),
-                                   parse_number("--quality", options.quality));
+  const double time = locking_time(t.body, t.orbit, spin, *options.love, *options.quality);
   found.rows.push_back({"locking_time_s", "time to lock by tides", time, "s"});
   found.rows.push_back({"locking_time_yr", "the same", time / julian_year, "yr"});
   found.notes.push_back(
@@ -215,8 +208,13 @@ Solve add_tides(CLI::App& command, Common&) {
       ->check(CLI::Range(2, 64));
   command.add_option("--spin", options->spin, "How fast it spins at first, about C: whether it is caught")
       ->type_name("RATE");
-  command.add_option("--love", options->love, "Love number k2 of the body: with --quality and --spin the time to lock");
-  command.add_option("--quality", options->quality, "Its quality factor Q");
+  command
+      .add_option("--love", options->love,
+                  fmt::format("Love number k2 of the body, above 0 to {}: with --quality and --spin the time to lock",
+                              largest_love))
+      ->type_name("NUMBER");
+  command.add_option("--quality", options->quality, fmt::format("Its quality factor Q, 1 to {:.0e}", largest_quality))
+      ->type_name("NUMBER");
   return [options](const PhysicsOptions& common) { return solve(common, *options); };
 }
 

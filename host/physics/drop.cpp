@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace cowgpu::physics {
@@ -128,6 +129,13 @@ public:
   }
   Real kinetic(const State& y) const { return problem_.body.mass * y.segment<3>(velocity).squaredNorm() / 2; }
 
+  Real spin_energy() const { return spin_.dot(inverse_ * spin_) / 2; }
+
+  // What gravity's gradient brings a rod of the body's size in that time.
+  Real tidal_momentum(Real time) const {
+    return 1.5L * Real(problem_.planet.gm) / (start_ * start_ * start_) * inertia_.trace() * time;
+  }
+
   struct Momentum {
     LongVec3 change;
     Real largest;
@@ -172,6 +180,41 @@ LongVec3 relative_turn(const State& y) {
   return length > 0 ? LongVec3(sine / length * (2 * std::atan2(length, cosine))) : sine;
 }
 
+constexpr double fastest_rim = 1000, most_turns = 1e4;
+
+void check_height(const DropProblem& problem) {
+  if (problem.vertices.empty()) throw Error(Fault::bad_argument, "a body without a surface has no lowest point");
+  if (!std::isfinite(problem.height) || !(problem.height > 0))
+    throw Error(Fault::bad_argument,
+                fmt::format("the height is {} m; it is that of the centre of mass above the ground and must be above 0",
+                            problem.height));
+  if (problem.height > 1e6 * problem.planet.radius)
+    throw Error(Fault::bad_argument,
+                fmt::format("a height of {} m is no fall to a ground of radius {} m: give a lower --height",
+                            problem.height, problem.planet.radius));
+  if (problem.planet.hill_radius > 0 && problem.planet.radius + problem.height > problem.planet.hill_radius)
+    throw Error(Fault::bad_argument,
+                fmt::format("a height of {:.6g} m is outside the {}'s Hill sphere, {:.4g} m, where nothing falls to it "
+                            "alone: give a lower --height",
+                            problem.height, problem.planet.name, problem.planet.hill_radius));
+}
+
+void check_spin(const Fall& fall, const State& start, Real way, Real time) {
+  const Real speed = fall.rim_speed(start), falls = fall.landing_speed(way);
+  if (speed > fastest_rim * falls)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("the spin moves the body's rim at {:.3g} m/s, more than {} times as fast as it falls from here "
+                    "({:.3g} m/s): lower --spin",
+                    double(speed), fastest_rim, double(falls)));
+  const Real turns = speed / fall.reach() * time / (2 * std::numbers::pi_v<Real>);
+  if (turns > most_turns)
+    throw Error(Fault::bad_argument,
+                fmt::format("the body turns {:.3g} times as it falls for {:.3g} s, and more than {:.0e} turns are not "
+                            "followed: lower --spin or --height",
+                            double(turns), double(time), most_turns));
+}
+
 } // namespace
 
 LongMat3 rotation_of(long double w, const LongVec3& v) {
@@ -186,16 +229,8 @@ long double radial_fall_time(long double gm, long double r, long double d) {
   return std::sqrt(r / (2 * gm)) * r * (std::asin(std::sqrt(part)) + std::sqrt(part * (1 - part)));
 }
 
-DropResult drop(const DropProblem& problem, const Monitor& monitor) {
-  if (problem.vertices.empty()) throw Error(Fault::bad_argument, "a body without a surface has no lowest point");
-  if (!std::isfinite(problem.height) || !(problem.height > 0))
-    throw Error(Fault::bad_argument,
-                fmt::format("the height is {} m; it is that of the centre of mass above the ground and must be above 0",
-                            problem.height));
-  if (problem.height > 1e6 * problem.planet.radius)
-    throw Error(Fault::bad_argument,
-                fmt::format("a height of {} m is no fall to a ground of radius {} m: give a lower --height",
-                            problem.height, problem.planet.radius));
+DropResult drop(const DropProblem& problem, Monitor& monitor) {
+  check_height(problem);
   const Fall fall(problem);
   State y = State::Zero(size);
   Fall::Lowest least = fall.lowest(y);
@@ -207,14 +242,16 @@ DropResult drop(const DropProblem& problem, const Monitor& monitor) {
         fmt::format("at a height of {} m the body touches the ground already: its lowest point is {:.6g} m under "
                     "its centre of mass; give a larger --height",
                     problem.height, result.depth));
-  if (const Real speed = fall.rim_speed(y), falls = fall.landing_speed(least.height); speed > 1000 * falls)
-    throw Error(
-        Fault::bad_argument,
-        fmt::format("the spin moves the body's rim at {:.3g} m/s, more than 1000 times as fast as it falls from here "
-                    "({:.3g} m/s): lower --spin",
-                    double(speed), double(falls)));
+  const Real whole = radial_fall_time(problem.planet.gm, fall.start(), least.height);
+  check_spin(fall, y, least.height, whole);
   result.torque = fall.pull_at(LongVec3(0, fall.start(), 0), LongMat3::Identity()).torque;
-  const Slope slope = [&](Real, const State& s) { return fall.slope(s); };
+  Real done = 0; // trial steps go back
+  const Slope slope = [&](Real now, const State& s) {
+    check_stop(monitor);
+    done = std::max(done, now);
+    monitor.progress("falling", std::min(1.0, double(done / whole)));
+    return fall.slope(s);
+  };
   const Real close = 1e-13L * (problem.height + fall.reach());
   const std::vector<Block> blocks = fall.blocks();
   Real step = 0, t = 0;
@@ -235,9 +272,9 @@ DropResult drop(const DropProblem& problem, const Monitor& monitor) {
   result.first_order = problem.attitude * (fall.inverse() * result.torque) * (t * t / 2);
   result.touching = least.vertex;
   result.as_low = fall.count_below(y, least.height + 1e-9L * fall.reach());
-  result.energy_drift = std::abs(fall.energy_gain(y)) / fall.kinetic(y);
+  result.energy_drift = std::abs(fall.energy_gain(y)) / (fall.kinetic(y) + fall.spin_energy());
   const Fall::Momentum momentum = fall.momentum_gain(y);
-  result.momentum_drift = momentum.largest > 0 ? momentum.change.norm() / momentum.largest : 0;
+  result.momentum_drift = momentum.change.norm() / std::max(momentum.largest, fall.tidal_momentum(t));
   return result;
 }
 

@@ -36,16 +36,18 @@ struct DropResult {
   LongVec3 torque = LongVec3::Zero(); ///< at the start, in the body's axes, N m
   std::size_t touching = 0;           ///< the vertex that touches
   std::size_t as_low = 0;             ///< how many are as low, to 1e-9 of the largest distance of a vertex
-  long double energy_drift = 0;       ///< of kinetic + potential energy, over the kinetic energy at the end
-  long double momentum_drift = 0; ///< of the angular momentum about the planet's centre, over the largest of its parts
+  long double energy_drift = 0;       ///< of the energy, over the kinetic at the end with that of the spin at the start
+  long double momentum_drift =
+      0; ///< of the angular momentum about the planet's centre that gravity has brought, over the
+         ///< largest of its parts, but at least over what it brings a rod of this body's size
 };
 
 /// Integrates position, momentum, attitude (a quaternion) and angular momentum by extrapolate(), all as departures from the
 /// start, until the first vertex touches the sphere of the ground: no time step is longer than the body needs to reach it.
-/// Throws Error(bad_argument) for a height at which the body touches already, or that is not finite or over 1e6 radii of the
-/// ground, for a body without vertices, and for a spin that moves its vertices more than 1000 times faster than it falls, which
-/// takes too many steps; interrupted.
-DropResult drop(const DropProblem& problem, const Monitor& monitor = silent_monitor());
+/// Throws Error(bad_argument) for a height at which the body touches already, or that is not finite, over 1e6 radii of the
+/// ground or beyond the planet's Hill sphere, for a body without vertices, and for a spin that moves its vertices more than
+/// 1000 times faster than it falls, or turns it more than 1e4 times, which takes too many steps; interrupted.
+DropResult drop(const DropProblem& problem, Monitor& monitor = silent_monitor());
 
 /// Time in s of a radial fall from rest at r over the distance d < r:
 /// sqrt(r^3/(2 gm)) (asin sqrt(d/r) + sqrt(d/r (1 - d/r))).

@@ -20,7 +20,7 @@ struct Finding {
   std::string label; ///< on the screen: "radiated power"
   Value value;
   std::string unit = {};             ///< "W"; in JSON the member `units` has it under the same key
-  std::string missing = "not known"; ///< on the screen where there is no value, without the unit: "never"
+  std::string missing = "not known"; ///< on the screen where there is no value, without the unit: "never"; empty: no line
 };
 
 /// A column of a table; the name is lower case with underscores, for JSON and CSV.

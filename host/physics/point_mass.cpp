@@ -2,8 +2,8 @@
 
 #include "host/backend.hpp"
 #include "host/error.hpp"
+#include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
-#include "host/spectrum/convert.hpp"
 #include "host/spectrum/verify.hpp"
 
 #include <Eigen/Geometry>
@@ -45,18 +45,7 @@ MassiveBody massive_body(const CoefficientSet& set, const MassTensors& tensors, 
         fmt::format("these coefficients are about a point {:.3g} m off the centre of mass, about which the body "
                     "turns; degrees above 2 are those of that point: take --order 2, or the mesh",
                     tensors.first_moment.norm() / tensors.mass));
-  ConversionTarget target;
-  target.kind = CoefficientKind::multipoles;
-  target.lmax = order;
-  const CoefficientSet low = converted(set, target);
-  const SphereCoefficients q = orthonormal(low);
-  Coefficients moments;
-  moments.lmax = order;
-  moments.reference_radius = low.reference_radius.value() * unit_m;
-  moments.values.resize(Coefficients::count(order));
-  for (int l = 0; l <= order; ++l)
-    for (int m = 0; m <= l; ++m) moments.values[Coefficients::index(l, m)] = unit_kg * q.at(0, l, m);
-  return massive_body(centred, std::move(moments), order);
+  return massive_body(centred, in_si(mass_moments(set, order), unit_m, unit_kg), order);
 }
 
 Pull pull(const MassiveBody& body, long double gm, const LongVec3& x) {

@@ -23,15 +23,16 @@ using LongMat3 = Eigen::Matrix<long double, 3, 3>;
 
 /// A mass that pulls, known best by its product with G.
 struct PointMass {
-  std::string name;                                              ///< "earth", or empty
-  double gm = 0;                                                 ///< m^3/s^2
-  double radius = 0;                                             ///< of the ground in m; 0: a point
+  std::string name;       ///< "earth", or empty
+  double gm = 0;          ///< m^3/s^2
+  double radius = 0;      ///< of the ground in m; 0: a point
+  double hill_radius = 0; ///< in m; farther out what it orbits itself pulls things off; 0: it is alone
   double mass() const { return gm / gravitational_constant_si; } ///< kg
 };
 
 /// Nominal GM of earth and sun (IAU 2015 resolution B3), GM of the moon in DE440 (Park et al. 2021, Astron. J. 161, 105);
-/// mean radius of the earth.
-inline const PointMass earth{"earth", 3.986004e14, 6371e3};
+/// mean radius of the earth; Hill radius au (GM/(3 GM of the sun))^(1/3).
+inline const PointMass earth{"earth", 3.986004e14, 6371e3, 1.4966e9};
 inline const PointMass moon{"moon", 4.902800118e12, 1737.4e3};
 inline const PointMass sun{"sun", 1.3271244e20, 695700e3};
 

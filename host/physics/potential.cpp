@@ -147,6 +147,13 @@ Coefficients mass_moments(const CoefficientSet& set, int lmax) {
   return moments;
 }
 
+Coefficients in_si(Coefficients moments, double metres, double kilograms) {
+  moments.origin *= metres;
+  moments.reference_radius *= metres;
+  for (auto& q : moments.values) q *= kilograms;
+  return moments;
+}
+
 SeriesErrors series_errors(const Body& body, const std::vector<int>& orders, const std::vector<double>& distances,
                            Backend& backend, unsigned threads, Monitor& monitor) {
   if (orders.empty() || distances.empty())

@@ -20,6 +20,9 @@ inline constexpr double coulomb_constant_si = 8.9875517923e9;
 /// throws.
 Coefficients mass_moments(const CoefficientSet& set, int lmax);
 
+/// Moments whose unit of length is so many metres, and whose unit of mass so many kilograms, in SI.
+Coefficients in_si(Coefficients moments, double metres, double kilograms);
+
 /// From V = integral of density/|x - y| to what it stands for, per unit of a test body. Gravity: potential -G V, acceleration
 /// G grad V, its gradient G dd V. Charges: potential k V, field -k grad V, its gradient -k dd V.
 struct FieldLaw {

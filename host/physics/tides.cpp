@@ -149,12 +149,23 @@ double capture_half_width(const PrincipalAxes& principal, const Orbit& orbit) {
 
 double locking_time(const MassiveBody& body, const Orbit& orbit, double spin, double love, double quality) {
   check_positive("spin", spin);
-  check_positive("Love number k2", love);
-  check_positive("quality factor Q", quality);
+  if (!(love > 0) || !(love <= largest_love))
+    throw Error(Fault::bad_argument,
+                fmt::format("the Love number k2 (--love) is {}; it is above 0 and at most {}, that of a uniform fluid",
+                            love, largest_love));
+  if (!(quality >= 1) || !(quality <= largest_quality))
+    throw Error(Fault::bad_argument, fmt::format("the quality factor Q (--quality) is {}; it is from 1 to {:.0e}",
+                                                 quality, largest_quality));
   const double moment = body.inertia.trace() / 3, radius = std::sqrt(2.5 * moment / body.mass);
   const double ratio = orbit.radius / radius; // r^6/R^5 may leave the range
-  return spin * moment * quality * gravitational_constant_si / (3 * love * orbit.gm * orbit.gm) * std::pow(ratio, 5) *
-         orbit.radius;
+  const double time = spin * moment * quality * gravitational_constant_si / (3 * love * orbit.gm * orbit.gm) *
+                      std::pow(ratio, 5) * orbit.radius;
+  if (!(time > 1e-290) || !(time < 1e290))
+    throw Error(Fault::bad_argument,
+                fmt::format("the time to lock, {:.3g} s, is too short or too long to compute with: change the spin of "
+                            "{:.3g} rad/s or the orbit of {:.3g} m",
+                            time, spin, orbit.radius));
+  return time;
 }
 
 } // namespace cowgpu::physics

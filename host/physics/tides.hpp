@@ -83,9 +83,12 @@ double largest_quadrupole_torque(const PrincipalAxes& principal, const Orbit& or
 /// separatrix as the long axis points to the point mass (P. Goldreich and S. Peale 1966, Astron. J. 71, 425).
 double capture_half_width(const PrincipalAxes& principal, const Orbit& orbit);
 
+/// What a Love number k2 and a quality factor can be: a uniform fluid's k2 is 3/2, and no body that is known has a Q beyond.
+inline constexpr double largest_love = 1.5, largest_quality = 1e12;
+
 /// Time to lock from a spin rate, omega r^6 I Q / (3 G M^2 k2 R^5) in s (B. Gladman et al. 1996, Icarus 122, 166, eq. 9), with I
 /// and R the moment and the radius of the uniform ball of the body's mass and second moment. Throws Error(bad_argument) for
-/// values that are not above 0.
+/// a spin or k2 that is not above 0, k2 over largest_love, Q outside 1 to largest_quality, and a time of no computable size.
 double locking_time(const MassiveBody& body, const Orbit& orbit, double spin, double love, double quality);
 
 } // namespace cowgpu::physics

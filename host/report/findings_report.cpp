@@ -142,11 +142,13 @@ void write_findings(const Findings& findings, const Sink& sink) {
   sink(findings.title + "\n");
   for (const std::string& note : findings.notes) sink("note: " + note + "\n");
   for (const Finding& row : findings.rows) {
+    if (std::holds_alternative<std::monostate>(row.value)) {
+      if (!row.missing.empty()) sink(fmt::format("  {:<38} {}\n", row.label, row.missing));
+      continue;
+    }
     const bool matrix = std::holds_alternative<Eigen::Matrix3d>(row.value);
     const std::string value = std::visit(ToText{}, row.value);
-    if (std::holds_alternative<std::monostate>(row.value))
-      sink(fmt::format("  {:<38} {}\n", row.label, row.missing));
-    else if (matrix)
+    if (matrix)
       sink(fmt::format("  {}{}{}\n", row.label, row.unit.empty() ? "" : ", " + row.unit, value));
     else
       sink(fmt::format("  {:<38} {}{}\n", row.label, value, row.unit.empty() ? "" : " " + row.unit));

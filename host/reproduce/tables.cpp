@@ -89,6 +89,11 @@ void add_beside(const Documents& documents, const std::string& table, const std:
     row.table = table;
     row.item = "all of them";
     row.reason = "there is no " + file;
+    if (documents.count(file) > 0) { // of a body that the paper has no numbers about
+      row.verdict = Verdict::not_compared;
+      row.reason = "ours is of another body";
+      row.source = file;
+    }
     rows.push_back(row);
     return;
   }
