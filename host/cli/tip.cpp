@@ -164,7 +164,7 @@ Table patch_table(const Stance& stance, const std::string& length) {
 void add_force_rows(const Stood& stood, const TipInput& input, const Options& options, Findings& found) {
   const Stance& stance = stood.stance;
   const Tipping& t = stood.chosen();
-  const std::string length = input.metric ? "m" : "of the mesh";
+  const std::string length = input.metric ? "m" : "mesh units";
   const Weight weight{stance.body.mass * options.gravity, input.metric};
   found.rows = {
       {"body", "body", input.full_is},
@@ -210,7 +210,9 @@ void add_notes(const Stood& stood, const TipInput& input, const Options& options
   if (!input.metric)
     found.notes.push_back("no unit of length was stated: forces are in units of the body's weight; --length or "
                           "--length-unit, with --density, make them newtons");
-  if (!options.as_modelled)
+  if (!options.as_modelled && stance.attitude.angle == 0)
+    found.notes.push_back("settled: it stands as modelled, its barycentre over a facet of its hull");
+  else if (!options.as_modelled)
     found.notes.push_back(
         fmt::format("settled: it rolled down from the attitude as modelled to where its barycentre is "
                     "over a facet of its hull; coordinates are those of the body turned by {:.6g} "
@@ -303,7 +305,7 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
   Findings found = input.head;
   add_notes(stood, input, options, found);
   add_force_rows(stood, input, options, found);
-  const std::string length = input.metric ? "m" : "of the mesh";
+  const std::string length = input.metric ? "m" : "mesh units";
   std::optional<double> friction;
   if (options.friction >= 0) friction = options.friction;
   const Rocker body = rocker(stood.stance.body, stood.chosen(), options.gravity, plan.turns_with_body);
