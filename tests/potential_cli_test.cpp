@@ -110,6 +110,21 @@ TEST_CASE("series and polyhedron give one field outside, and inside the polyhedr
   answer({"builtin:box:1,1,1", "--at", "0.5,0.5,0.3", "--exact", "--derivatives", "1", "--device", "cpu"});
 }
 
+TEST_CASE("on the sphere that holds the body --inside exact takes the polyhedron, and near it the series says how near",
+          "[potential][cli]") {
+  const std::string corner = "0.5,1,1.5";
+  refused({"builtin:box:1,2,3", "--at", corner, "--inside", "exact"}, 3, "point-singular");
+  const json exact = answer({"builtin:box:1,2,3", "--at", corner, "--exact", "--derivatives", "1"}),
+             inside = answer({"builtin:box:1,2,3", "--at", corner, "--inside", "exact", "--derivatives", "1"});
+  CHECK(inside["exact_count"] == 1);
+  CHECK(inside["acceleration"] == exact["acceleration"]);
+  const auto notes = [&](const char* place) {
+    return answer({"builtin:box:1,2,3", "--at", place, "--device", "cpu"})["notes"].dump();
+  };
+  CHECK_THAT(notes("0,0,1.9"), Contains("its terms have fallen"));
+  CHECK_THAT(notes("0,0,20"), !Contains("its terms have fallen"));
+}
+
 TEST_CASE("coefficient files of masses and potentials give the mesh's field, and those of surfaces are refused",
           "[potential][cli]") {
   const TemporaryFolder folder;
@@ -137,6 +152,24 @@ TEST_CASE("coefficient files of masses and potentials give the mesh's field, and
     CHECK(found["potential"].get<double>() == Approx(truth["potential"].get<double>()).epsilon(1e-13));
     CHECK(found["acceleration"][1].get<double>() == Approx(truth["acceleration"][1].get<double>()).epsilon(1e-12));
   }
+  // A density takes the place of the file's own, and without one that stands.
+  const auto value = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--at", "3,-2,4", "--device", "cpu"});
+    return answer(arguments)["potential"].get<double>();
+  };
+  const std::string dense = folder / "dense.json";
+  std::vector<std::string> denser = expand;
+  denser.insert(denser.end(), {"--density", "2.5", "-o", dense});
+  REQUIRE(run_program(denser).exit_code == 0);
+  const double of_one = value({name});
+  CHECK(value({dense}) == Approx(2.5 * of_one).epsilon(1e-14));
+  CHECK(value({dense, "--density", "3"}) == Approx(3 * of_one).epsilon(1e-14));
+  CHECK(value({name, "--density", "3"}) == Approx(3 * of_one).epsilon(1e-14));
+  CHECK(value({dense, "--length-unit", "2m"}) ==
+        Approx(2.5 * value({name, "--length-unit", "2m", "--density", "1kg/m3"})).epsilon(1e-14));
+  CHECK(value({dense, "--length-unit", "2m", "--density", "1g/cm3"}) ==
+        Approx(truth["potential"].get<double>()).epsilon(1e-13));
+  refused({geodesy, "--at", "3,-2,4", "--density", "2"}, 2, "kilograms already");
   refused({geodesy, "--at", "3,-2,4", "--length-unit", "1m"}, 2, "already");
   refused({geodesy, "--at", "3,-2,4", "--charge"}, 2, "kilograms");
   refused({name, "--at", "3,-2,4", "--exact"}, 3, "takes the exact polyhedron");

@@ -98,7 +98,11 @@ TEST_CASE("markup in names and documents cannot leave its place in the page", "[
   result["mesh"]["name"] = hostile;
   result["notes"] = {hostile};
   write(reports.folder / "cow.json", result.dump());
-  const json physics = {{"schema", "cowgpu.tip.v1"}, {hostile, hostile}};
+  const json physics = {{"schema", "cowgpu.tip.v1"},
+                        {"input", json::object()},
+                        {"units", json::object()},
+                        {"notes", json::array()},
+                        {hostile, hostile}};
   write(reports.folder / "tip.json", physics.dump(2));
   const ProgramRun run = reports.report({reports.folder / "cow.json", "--physics", reports.folder / "tip.json"});
   INFO(run.err);
@@ -129,6 +133,9 @@ TEST_CASE("what is wrong with a report is said, and no page is written", "[repor
   refused({other}, 3, "file-format", "cowgpu expand");
   write(other, "{\"schema\": \"other.v1\"}");
   refused({cow, "--physics", other}, 3, "file-format", "no document of cowgpu");
+  write(other, "{\"schema\": \"cowgpu.tensors.v1\"}");
+  refused({cow, "--physics", other}, 3, "file-format", "no findings to show");
+  refused({cow, "--physics", cow}, 3, "file-format", "no findings to show");
   write(other, "{\"schema\": \"cowgpu.tip.v1\"");
   refused({cow, "--physics", other}, 3, "file-syntax", "other.json");
   refused({cow, "--mesh", "builtin:nothing"}, 2, "bad-argument", "builtin:nothing");
@@ -136,6 +143,23 @@ TEST_CASE("what is wrong with a report is said, and no page is written", "[repor
   refused({cow}, 3, "file-format", "not the page");
   std::filesystem::remove(reports.folder / "report.html");
   refused({cow}, 5, "page-missing", "--target page");
+}
+
+TEST_CASE("reports and figures tell when a result is of another mesh, and what a page must be called",
+          "[report][cli]") {
+  const Reports reports;
+  const std::string cow = reports.folder / "cow.json", picture = reports.folder / "x.png";
+  const ProgramRun other = reports.report({cow, "--mesh", "builtin:box"});
+  CHECK(other.exit_code == 0);
+  CHECK_THAT(other.err, Contains("another SHA-256") && Contains("warning"));
+  CHECK_THAT(reports.report({cow, "--mesh", "builtin:cow@1"}).err, !Contains("warning"));
+  const ProgramRun figure = run_program({"figure", "orders", "builtin:box", "--result", cow, "-o", picture});
+  CHECK(figure.exit_code == 3);
+  CHECK_THAT(figure.err, Contains("another mesh"));
+  CHECK_FALSE(std::filesystem::exists(picture));
+  const ProgramRun named = run_program({"report", cow, "-o", reports.folder / "cow.pdf"}, reports.options);
+  CHECK(named.exit_code == 2);
+  CHECK_THAT(named.err, Contains(".html"));
 }
 
 TEST_CASE("a report does not overwrite what it reads", "[report][cli]") {

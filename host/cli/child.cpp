@@ -7,9 +7,11 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -34,7 +36,16 @@ int exit_status(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+constexpr const char* parent_variable = "COWGPU_STAGE_OF"; // the parent's process number
+
 } // namespace
+
+void end_with_parent() {
+  const char* parent = std::getenv(parent_variable);
+  if (!parent) return;
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (std::to_string(getppid()) != parent) raise(SIGTERM); // it died before
+}
 
 int run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                 const std::string& output, const std::string& errors, const Monitor& monitor,
@@ -44,13 +55,18 @@ int run_program(const std::vector<std::string>& arguments, const std::filesystem
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
+  std::string parent = fmt::format("{}={}", parent_variable, getpid());
+  std::vector<char*> environment = {parent.data()};
+  for (char** variable = environ; *variable; ++variable) environment.push_back(*variable);
+  environment.push_back(nullptr);
   Actions actions;
   posix_spawn_file_actions_addchdir_np(&actions.actions, folder.c_str());
   posix_spawn_file_actions_addopen(&actions.actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   actions.write_to(STDOUT_FILENO, output);
   actions.write_to(STDERR_FILENO, errors);
   pid_t process = 0;
-  if (const int reason = posix_spawn(&process, "/proc/self/exe", &actions.actions, nullptr, argv.data(), environ))
+  if (const int reason =
+          posix_spawn(&process, "/proc/self/exe", &actions.actions, nullptr, argv.data(), environment.data()))
     throw Error(Fault::cannot_write, fmt::format("`cowgpu {}` could not be started in {}: {}", arguments[0],
                                                  folder.string(), std::strerror(reason)));
   bool told = false;

@@ -18,4 +18,7 @@ int run_program(const std::vector<std::string>& arguments, const std::filesystem
                 const std::string& output, const std::string& errors, const Monitor& monitor,
                 const std::function<void()>& waiting);
 
+/// In a process that run_program() started: it gets SIGTERM once its parent has died, so that nothing goes on unwatched.
+void end_with_parent();
+
 } // namespace cowgpu::cli

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 namespace cowgpu::cli {
 namespace {
@@ -33,6 +34,11 @@ constexpr Figure figures_known[] = {
     {"spectra", "all", true},        {"orders", "stretch", false}, {"components", "stretch", false},
     {"definition", "stretch", true}, {"inflation", "", false},     {"streamlines", "", true},
     {"tipping", "", false}};
+
+// A mesh's name without its folder.
+std::string short_name(const RawMesh& mesh) {
+  return std::filesystem::path(mesh.name).filename();
+}
 
 std::string map_title(const std::string& name) {
   if (name == "flow") return "gradient flow";
@@ -60,14 +66,14 @@ public:
     if (!options_.results.empty()) return of_results(format);
     const ExpansionChoice choice =
         parse_expansions(options_.of.empty() ? figure_.of : options_.of, options_.recipe, "", options_.lmax);
-    const std::vector<SurfaceResult> results = expand_surfaces(choice, false, body_, *backend_, monitor_);
+    const std::vector<SurfaceResult> results = expand(choice);
     if (name == "spectra") return spectra(format, choice, results);
     if (results.size() != 1 || choice.mass)
       throw Error(
           Fault::bad_argument,
           fmt::format("--of {}: the figure '{}' is of one map: harmonic, stretch, smooth or flow", options_.of, name));
     const SurfaceResult& result = results[0];
-    const std::string title = fmt::format("{}, {}", mesh.name, map_title(result.name));
+    const std::string title = fmt::format("{}, {}", short_name(mesh), map_title(result.name));
     if (name == "orders")
       return figures::orders_figure(result.expansion, SurfaceFields::xyz, mesh, view, title, *backend_, monitor_);
     if (name == "components")
@@ -78,6 +84,25 @@ public:
   ConsoleMonitor& monitor() { return monitor_; }
 
 private:
+  // Where all maps are shown because none was named, one that cannot be made is left out.
+  std::vector<SurfaceResult> expand(const ExpansionChoice& choice) {
+    if (!options_.of.empty() || choice.maps.size() < 2)
+      return expand_surfaces(choice, false, body_, *backend_, monitor_);
+    std::vector<SurfaceResult> results;
+    for (const std::string& map : choice.maps) {
+      ExpansionChoice one = choice;
+      one.maps = {map};
+      try {
+        for (SurfaceResult& result : expand_surfaces(one, false, body_, *backend_, monitor_))
+          results.push_back(std::move(result));
+      } catch (const Error& error) {
+        if (error.fault() != Fault::map_failed) throw;
+        say(fmt::format("cowgpu: the {} is left out: {}\n", map_title(map), error.what()));
+      }
+    }
+    return results;
+  }
+
   // Of expansions that are in files, with the mass of the mesh beside them.
   plot::Canvas of_results(plot::PictureFormat format) {
     std::vector<SurfaceSource> sources;
@@ -85,11 +110,17 @@ private:
       SurfaceChoice choice;
       choice.input = file;
       sources.push_back(load_surface(choice, 0, *backend_, monitor_));
+      const std::string& hash = sources.back().mesh_hash;
+      if (!hash.empty() && hash != body_.surface.mesh().sha256)
+        throw Error(Fault::file_format,
+                    fmt::format("--result {}: it is of {}, another mesh than {} by its SHA-256; name that "
+                                "mesh, or expand this one",
+                                file, sources.back().mesh, options_.mesh));
     }
     if (options_.name == std::string("orders"))
       return figures::orders_figure(
           sources[0].expansion, SurfaceFields::xyz, body_.surface.mesh(), parse_view(options_.view),
-          fmt::format("{}, {}", body_.surface.mesh().name, map_title(sources[0].name)), *backend_, monitor_);
+          fmt::format("{}, {}", short_name(body_.surface.mesh()), map_title(sources[0].name)), *backend_, monitor_);
     std::vector<figures::NamedExpansion> named;
     for (const SurfaceSource& source : sources) named.push_back({map_title(source.name), &source.expansion});
     const Coefficients mass = mass_moments();
@@ -103,7 +134,7 @@ private:
     const Stance stance = stand(cow, {}), ball = stand(ball_like(cow, body_.mass()), {.as_modelled = true});
     const Tipping of_cow = physics::tipping(stance, Side::right), of_ball = physics::tipping(ball, Side::right);
     const std::array shown = {figures::TippedBody{&ball, &of_ball, "spherical body"},
-                              figures::TippedBody{&stance, &of_cow, body_.surface.mesh().name}};
+                              figures::TippedBody{&stance, &of_cow, short_name(body_.surface.mesh())}};
     return figures::tipping_figure(shown, *backend_, monitor_);
   }
 

@@ -1,3 +1,4 @@
+#include "host/cli/child.hpp"
 #include "host/cli/commands.hpp"
 #include "host/error.hpp"
 #include "host/version.hpp"
@@ -80,6 +81,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   cli::open_standard_streams();
   cli::catch_signals();
+  cli::end_with_parent();
   try {
     return run(argc, argv);
   } catch (const Error& error) {

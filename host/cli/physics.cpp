@@ -131,6 +131,25 @@ void refuse_placing(const BodyOptions& body) {
                                                    option, body.mesh));
 }
 
+namespace {
+
+// A file's body with the density that the user states instead of its own.
+void restate_density(const PhysicsOptions& options, CoefficientSet& set) {
+  if (set.length_unit == "m" && set.mass_unit == "kg")
+    throw Error(Fault::bad_argument,
+                fmt::format("--density: {} is in kilograms already, and its density stands", options.body.mesh));
+  const double density = stated_units(options.body).density, factor = density / set.density.value_or(1);
+  if (set.kind == CoefficientKind::multipoles) {
+    for (double& value : set.first) value *= factor;
+    for (double& value : set.second) value *= factor;
+  }
+  set.density = density;
+  for (std::optional<double>* of_mass : {&set.mass, &set.second_moment, &set.gm})
+    if (*of_mass) **of_mass *= factor;
+}
+
+} // namespace
+
 PhysicsInput load_input(const PhysicsOptions& options) {
   const BodyOptions& body = options.body;
   PhysicsInput input;
@@ -142,6 +161,8 @@ PhysicsInput load_input(const PhysicsOptions& options) {
   refuse_placing(body);
   input.coefficients = read_coefficient_set(body.mesh);
   input.notes = input.coefficients->notes;
+  if (options.density_given && input.coefficients->kind != CoefficientKind::field)
+    restate_density(options, *input.coefficients);
   return input;
 }
 
@@ -186,9 +207,9 @@ PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& op
   }
   if (!stated.metric) return placed;
   placed.unit_m = stated.metres;
-  placed.unit_kg =
-      stated.density / input.coefficients->density.value_or(1) * stated.metres * stated.metres * stated.metres;
-  placed.tensors = physics::in_si(placed.tensors, *placed.unit_m, *placed.unit_kg);
+  const double volume = std::pow(stated.metres, 3); // the density is in the numbers
+  placed.unit_kg = input.coefficients->density.value_or(1) * volume;
+  placed.tensors = physics::in_si(placed.tensors, stated.metres, volume);
   return placed;
 }
 
@@ -207,7 +228,8 @@ PlacedTensors metric_tensors(const PhysicsInput& input, const PhysicsOptions& op
 
 physics::MassiveBody massive_body(const PhysicsInput& input, const PlacedTensors& placed, int order) {
   if (!input.body)
-    return physics::massive_body(*input.coefficients, placed.tensors, *placed.unit_m, *placed.unit_kg, order);
+    return physics::massive_body(*input.coefficients, placed.tensors, *placed.unit_m, std::pow(*placed.unit_m, 3),
+                                 order);
   ConsoleMonitor monitor(ProgressStyle::none);
   return physics::massive_body(*input.body, order, monitor);
 }
@@ -234,9 +256,8 @@ PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& op
     throw Error(Fault::bad_argument,
                 fmt::format("--length-unit: {} is in metres and kilograms already", options.body.mesh));
   if (placed.metric || !stated.metric) return placed;
-  const double amount = stated.density / set.density.value_or(1) * std::pow(stated.metres, 3);
   placed.metric = true;
-  placed.moments = physics::in_si(std::move(placed.moments), stated.metres, amount);
+  placed.moments = physics::in_si(std::move(placed.moments), stated.metres, std::pow(stated.metres, 3));
   return placed;
 }
 
@@ -254,7 +275,11 @@ physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions
     findings.input_kind = "coefficients";
     findings.input_name = options.body.mesh;
   }
-  note_density(options, input.body ? input.body->placement.metric : stated_units(options.body).metric, findings.notes);
+  if (input.body)
+    note_density(options, input.body->placement.metric, findings.notes);
+  else if (stated_units(options.body).metric && !options.density_given && !options.body.charge)
+    findings.notes.push_back(fmt::format("the density was not given: that of the file, {:.6g}, is taken as kg/m3",
+                                         input.coefficients->density.value_or(1)));
   return findings;
 }
 

@@ -86,6 +86,7 @@ struct Solved {
   std::vector<std::uint8_t> exact;
   std::vector<double> density; // where exact
   std::size_t exact_points = 0;
+  double nearest = std::numeric_limits<double>::infinity(); // point of the series, in radii
 };
 
 [[noreturn]] void refuse_inside(const Solved& s, const std::vector<std::size_t>& inside, bool has_mesh) {
@@ -122,7 +123,15 @@ void compute(const PhysicsInput& input, const Options& options, const Coefficien
   std::vector<std::size_t> inside, outside;
   for (std::size_t i = 0; i < count; ++i) {
     const double r = (s.places.points[i] - s.frame.origin).norm();
-    const bool by_polyhedron = options.exact || !(r >= nearest_potential * s.frame.radius);
+    if (!(r < 1e150 * s.frame.radius))
+      throw Error(Fault::file_format,
+                  fmt::format("{}: point {} of {} is farther than 1e150 radii of the body, beyond what "
+                              "doubles hold of its field",
+                              s.places.name, i + 1, count));
+    // On the sphere itself, where a vertex may lie, the series does not converge either.
+    const double nearest = options.inside == "exact" ? 1 + 1e-9 : nearest_potential;
+    const bool by_polyhedron = options.exact || !(r >= nearest * s.frame.radius);
+    if (!by_polyhedron) s.nearest = std::min(s.nearest, r / s.frame.radius);
     (by_polyhedron ? inside : outside).push_back(i);
   }
   if (!inside.empty() && !options.exact && options.inside != "exact") refuse_inside(s, inside, input.body.has_value());
@@ -303,6 +312,11 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
         fmt::format("{} of {} points lie inside the sphere that holds the body: there the exact potential "
                     "of the polyhedron (Werner and Scheeres 1997)",
                     s.exact_points, s.places.points.size()));
+  if (const double rest = std::pow(s.nearest, -(s.lmax + 1)); input.body && rest > 1e-4)
+    found.notes.push_back(
+        fmt::format("the nearest point of the series is {:.6g} radii away: to degree {} its terms have fallen "
+                    "to {:.2g} there at most; a higher --lmax, or --exact, is nearer to the truth",
+                    s.nearest, s.lmax, rest));
   found.rows = {{"law", "law", std::string(options.charge ? "charge" : "gravity")},
                 {"constant", options.charge ? "Coulomb's constant" : "Newton's constant", s.units.law.constant,
                  metric ? (options.charge ? "N m^2/C^2" : "m^3/(kg s^2)") : ""},

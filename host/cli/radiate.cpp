@@ -214,7 +214,7 @@ std::vector<Comparison> beside_paper(const Radiation& r) {
   const double rounded = (13.787e9 - 12e6) * year / (2 * paper::timescale_s);
   return {
       {"length unit in m", paper::length / paper::box_length, paper::length_unit_m,
-       "2.39 cuts 2.3946 off; the power grows like its tenth power, + 1.9 %"},
+       "three digits of 2.3946; the power grows like its tenth power, + 1.9 %"},
       {"mass unit in kg", *r.unit_kg, paper::mass_unit_kg},
       {"volume", r.tensors.mass / *r.unit_kg, paper::volume, "0.05348 rounds to 0.053"},
       {"mass in kg", r.tensors.mass, paper::mass_kg, "of the volume 0.054"},

@@ -58,6 +58,12 @@ std::string read_findings(const std::string& path) {
     throw Error(Fault::file_format, fmt::format("{}: this JSON is no document of cowgpu; take what `cowgpu tensors "
                                                 "--json`, `radiate --json` and the like print",
                                                 path));
+  for (const char* member : {"input", "units", "notes"})
+    if (!document.contains(member))
+      throw Error(Fault::file_format,
+                  fmt::format("{}: a {} has no findings to show (no member '{}'); take what `cowgpu tensors --json`, "
+                              "`radiate --json` and the like print",
+                              path, schema.get<std::string>(), member));
   return text;
 }
 
@@ -81,6 +87,9 @@ std::string human(std::uintmax_t bytes) {
 
 void run(const Options& options, const Common& common) {
   const auto start = Clock::now();
+  if (!options.output.ends_with(".html"))
+    throw Error(Fault::bad_argument,
+                fmt::format("-o {}: the page is HTML, and its name must end in .html", options.output));
   refuse_same_file(options.result, options.output);
   for (const std::string& path : options.physics) refuse_same_file(path, options.output);
   const std::string page = read_page();
@@ -111,8 +120,10 @@ void run(const Options& options, const Common& common) {
     place(source.mesh, result_json::placement(options.result, source.document));
     field = backend->distance_field(source.mesh.vertices, source.mesh.faces);
     document.mesh_name = source.mesh.name;
-    if (source.document.value("/mesh/sha256"_json_pointer, "") != source.mesh.sha256)
+    if (source.document.value("/mesh/sha256"_json_pointer, "") != source.mesh.sha256) {
       document.notes.push_back(fmt::format("{} has another SHA-256 than the mesh that was expanded", source.mesh.name));
+      say(fmt::format("cowgpu: warning: {}: distances are to another body\n", document.notes.back()));
+    }
     if (source.mesh.faces.size() <= largest_mesh) {
       document.vertices = source.mesh.vertices;
       document.faces = source.mesh.faces;

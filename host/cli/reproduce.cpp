@@ -138,14 +138,12 @@ bool have_page() {
   }
 }
 
-void keep_only(const std::vector<std::string>& wanted, std::vector<Stage>& stages) {
+void check_names(const std::vector<std::string>& wanted, const std::vector<Stage>& stages) {
   std::string there;
   for (const Stage& stage : stages) there += (there.empty() ? "" : ", ") + stage.name;
   for (const std::string& name : wanted)
     if (std::none_of(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.name == name; }))
       throw Error(Fault::bad_argument, fmt::format("--only {}: there is no such stage; there are {}", name, there));
-  std::erase_if(
-      stages, [&](const Stage& stage) { return std::find(wanted.begin(), wanted.end(), stage.name) == wanted.end(); });
 }
 
 // The mesh to take, and whether it is the paper's.
@@ -172,23 +170,31 @@ void reproduce_all(const Options& options, Common& common) {
   if (fs::exists(all.mesh)) all.mesh = fs::absolute(all.mesh);
   all.mesh_hash = mesh.sha256;
   all.papers_mesh = mesh.sha256 == benchmark_sha256;
+  all.asked_for = !options.mesh.empty();
   const fs::path folder = options.folder;
   make_folder(folder / "data");
   make_folder(folder / "figures");
   const Lock lock(folder / "data" / ".lock");
-  Plan plan = reproduce::plan(all.mesh, all.papers_mesh, common.device, have_page());
-  if (!options.only.empty()) keep_only(options.only, plan.stages);
+  const Plan plan = reproduce::plan(all.mesh, all.papers_mesh, common.device, have_page());
+  check_names(options.only, plan.stages);
   State state(folder);
   ConsoleMonitor monitor(common.style());
   Run run{options, common, monitor, sha256_hex(std::string_view(read_file("/proc/self/exe"))) + all.mesh_hash, 0, 0};
-  for (const Stage& stage : plan.stages) run.all += stage.seconds;
-  std::size_t number = 0;
+  // With --only the others are shown where they were done before.
+  std::vector<Stage> stages;
   for (const Stage& stage : plan.stages) {
+    const bool wanted =
+        options.only.empty() || std::find(options.only.begin(), options.only.end(), stage.name) != options.only.end();
+    if (wanted || (!options.fresh && state.finished(stage, stage_key(stage, run.program)))) stages.push_back(stage);
+  }
+  for (const Stage& stage : stages) run.all += stage.seconds;
+  std::size_t number = 0;
+  for (const Stage& stage : stages) {
     const Ran ran = run_stage(stage, state, run);
     run.before += stage.seconds;
     monitor.clear();
     if (!common.quiet)
-      say(fmt::format("[{}/{}] {}: {}\n", ++number, plan.stages.size(), stage.what,
+      say(fmt::format("[{}/{}] {}: {}\n", ++number, stages.size(), stage.what,
                       ran.exit_code != 0 ? fmt::format("FAILED with exit code {}: {}", ran.exit_code, ran.message)
                       : ran.again        ? fmt::format("{:.1f} s", ran.seconds)
                                          : fmt::format("there already ({:.1f} s)", ran.seconds)));
@@ -237,7 +243,17 @@ void add_reproduce(CLI::App& app, Common& common) {
   command->add_flag("--fresh", options->fresh, "Do everything again");
   add_common_options(*command, common);
   command->footer("Example: cowgpu reproduce -o out");
-  command->callback([=, &common] { reproduce_all(*options, common); });
+  command->callback([=, &common] {
+    try {
+      reproduce_all(*options, common);
+    } catch (const Error& error) {
+      if (error.fault() != Fault::interrupted) throw;
+      throw Error(Fault::interrupted,
+                  fmt::format("interrupted: the stages that ended are kept in {}, and the same command "
+                              "goes on from there",
+                              options->folder));
+    }
+  });
 }
 
 } // namespace cowgpu::cli

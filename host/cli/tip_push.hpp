@@ -15,7 +15,7 @@ namespace cowgpu::cli {
 struct PushOptions {
   std::string push;               ///< FORCE:DURATION or FILE.csv, or empty
   std::string direction = "body"; ///< or "space"
-  std::string sustained = "500N", punch = "5000N", punch_duration;
+  std::string sustained = "500 N", punch = "5000 N", punch_duration;
 };
 
 void add_push_options(CLI::App& command, PushOptions& options);

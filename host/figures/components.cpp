@@ -102,7 +102,7 @@ plot::Canvas components_figure(const RawMesh& mesh, const SphereMap& map, const 
               {.size = 11, .across = plot::Across::middle, .down = plot::Down::top, .bold = true});
   canvas.picture(image, {0, top + 18, 3 * column, body_height});
   const std::string names[] = {"$f_r$", "$f_{Δθ}$", "$|f_{Δφ}|$ less its mean"};
-  const std::string labels[] = {"$f_r$ (" + unit + ")", "$f_{Δθ}$ (rad)", "$|f_{Δφ}|$ (rad)"};
+  const std::string labels[] = {"$f_r$ (" + unit + ")", "$f_{Δθ}$ (rad)", "$|f_{Δφ}|$ less its mean (rad)"};
   for (std::size_t f = 0; f < 3; ++f) {
     const double left = column * double(f);
     canvas.text({left + column / 2, top + 4}, names[f],

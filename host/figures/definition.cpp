@@ -30,7 +30,9 @@ Shown choose(const RawMesh& mesh, const SphereMap& map, const Vec3& origin, doub
     if (score > highest) highest = score, best = {phi, phi + off, r};
   }
   if (highest == -INFINITY)
-    throw Error(Fault::map_failed, "no vertex near the plane of the figure comes from near the equator of the sphere");
+    throw Error(Fault::map_failed,
+                "no vertex near the plane of the figure comes from near the equator of the sphere; take another "
+                "--of, or a mesh with more vertices");
   return best;
 }
 

@@ -65,7 +65,7 @@ public:
     name({p.x, p.y - arrow}, -6, 2, "$F_N$", plot::blue);
     name(b, 9, 6, "$b$", plot::black);
     name(top, 9, 2, "$p_T$", plot::vermilion);
-    name(push, 0, -12, "$F_T$", plot::vermilion);
+    name({push.x, std::max(push.y, title_height + 20)}, 0, -12, "$F_T$", plot::vermilion);
     name({0.7 * b.x + 0.3 * top.x, 0.7 * b.y + 0.3 * top.y}, 9, 0, "$q$", plot::black);
   }
 

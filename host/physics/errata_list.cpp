@@ -66,7 +66,8 @@ constexpr std::array list = {
     Erratum{17, "the inflated cow of the table is star-shaped, its projection smooth and one to one",
             "only after t = 0.242", "the table is of t = 0.2, where the projection still folds", "cowgpu inflate"},
     Erratum{18, "the unit of length is 2.39 m", "2.5 m/1.044 = 2.3946 m",
-            "cut, not rounded; the power grows like its tenth power", "cowgpu radiate --recipe paper"},
+            "three digits are few: the power grows like its tenth power, and is 1.9 % more with 2.3946 m",
+            "cowgpu radiate --recipe paper"},
 };
 
 } // namespace

@@ -138,7 +138,7 @@ ExactField exact_field(const Body& body, std::span<const Vec3> points, Derivativ
   if (derivatives != Derivatives::none) found.field.gradient.resize(count);
   if (derivatives == Derivatives::second) found.field.hessian.resize(count);
   for (std::size_t i = 0; i < count; ++i)
-    if (!points[i].allFinite()) throw Error(Fault::bad_argument, fmt::format("point {} is not finite", i));
+    if (!points[i].allFinite()) throw Error(Fault::bad_argument, "a point is not finite");
   if (threads == 0) threads = all_threads();
   std::vector<Polyhedron::Scratch> scratch(threads);
   std::atomic<std::size_t> done = 0;
@@ -154,10 +154,10 @@ ExactField exact_field(const Body& body, std::span<const Vec3> points, Derivativ
     }
     if (sum.on_edge && derivatives == Derivatives::second)
       throw Error(Fault::point_singular,
-                  fmt::format("point {} ({}, {}, {}) lies on an edge of the body, where the second derivatives of its "
+                  fmt::format("the point ({}, {}, {}) lies on an edge of the body, where the second derivatives of its "
                               "potential are infinite; move it, or ask for potential and acceleration alone "
                               "(--derivatives 1)",
-                              i, points[i][0], points[i][1], points[i][2]));
+                              points[i][0], points[i][1], points[i][2]));
     found.density[i] = double(sum.winding);
     found.field.value[i] = double(sum.value);
     if (derivatives == Derivatives::none) return;

@@ -133,7 +133,7 @@ void check_weighs(const MassTensors& centred) {
   const bool metric = centred.metric();
   throw Error(Fault::bad_argument,
               fmt::format("the body weighs {:.6g}{} and its least moment of inertia is {:.6g}{}: only one with both "
-                          "above 0 moves as bodies do",
+                          "above 0 moves as bodies do; change its density, or that of its parts",
                           centred.mass, metric ? " kg" : "", least, metric ? " kg m^2" : ""));
 }
 

@@ -65,7 +65,7 @@ std::vector<Drawing> drawings(const std::string& mesh, const Words& recipe) {
        "Orders over the map of least stretch",
        "The same over a map that keeps room for the legs; the "
        "paper has none like it.",
-       figure("orders") + Words{"--result", "data/stretch.json"},
+       figure("orders") + Words{"--result", "data/stretch.json", "--lmax", "128"},
        {"png"},
        6},
       {"components",

@@ -37,9 +37,15 @@ std::string cell(const std::string& text) {
   return safe;
 }
 
+// As a shell takes it.
 std::string quoted(const std::vector<std::string>& words) {
   std::string line = "cowgpu";
-  for (const std::string& word : words) line += " " + word;
+  for (const std::string& word : words) {
+    const bool plain =
+        word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./:,@=+") ==
+        std::string::npos;
+    line += plain && !word.empty() ? " " + word : " '" + word + "'";
+  }
   return line;
 }
 
@@ -47,9 +53,9 @@ std::string heading(const Reproduction& all) {
   std::string text = "# Higher multipoles of the cow, reproduced\n\n";
   if (!all.papers_mesh)
     text += fmt::format(
-        "# THIS IS NOT THE PAPER'S COW\n\n**The paper's mesh is not on this machine. Everything below is of "
-        "`{}` instead, and nothing is compared. `cowgpu meshes` says where to get the paper's mesh.**\n\n",
-        all.mesh);
+        "# THIS IS NOT THE PAPER'S COW\n\n**{} Everything below is of `{}`, and nothing is compared.{}**\n\n",
+        all.asked_for ? "Another body was asked for." : "The paper's mesh is not on this machine.", all.mesh,
+        all.asked_for ? "" : " `cowgpu meshes` says where to get the paper's mesh.");
   const Tally counts = tally(all.rows);
   text += fmt::format(
       "Of {} numbers that the paper prints, {} agree to its printed digits, {} differ (each with the reason)",

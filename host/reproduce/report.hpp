@@ -25,6 +25,7 @@ struct Reproduction {
   std::string created;
   std::string mesh, mesh_hash;
   bool papers_mesh = true;
+  bool asked_for = false;        ///< the user named this mesh; else it stands in for the paper's, which is missing
   nlohmann::ordered_json device; ///< as in the result of `expand`, or null
   double seconds = 0;            ///< of all stages, whenever they ran
   std::vector<Row> rows;
