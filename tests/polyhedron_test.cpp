@@ -194,7 +194,7 @@ TEST_CASE("second derivatives on an edge are refused, value and gradient are not
     FAIL("not refused");
   } catch (const Error& error) {
     CHECK(error.fault() == Fault::point_singular);
-    CHECK_THAT(error.what(), Catch::Contains("point 1 (1, 1, 0.3)"));
+    CHECK_THAT(error.what(), Catch::Contains("the point (1, 1, 0.3)"));
   }
   const physics::ExactField field = physics::exact_field(cube, points, Derivatives::first, 1, silent);
   CHECK(field.field.hessian.empty());
