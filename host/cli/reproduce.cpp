@@ -78,7 +78,6 @@ std::string last_words(const fs::path& log) {
 
 struct Run {
   const Options& options;
-  Common& common;
   ConsoleMonitor& monitor;
   std::string program;        // its hash
   double all = 0, before = 0; // seconds that stages are expected to take
@@ -146,7 +145,7 @@ void check_names(const std::vector<std::string>& wanted, const std::vector<Stage
       throw Error(Fault::bad_argument, fmt::format("--only {}: there is no such stage; there are {}", name, there));
 }
 
-// The mesh to take, and whether it is the paper's.
+// The mesh to take, and its name.
 RawMesh find_mesh(const Options& options, std::string& name) {
   name = options.mesh.empty() ? "benchmark" : options.mesh;
   try {
@@ -179,7 +178,7 @@ void reproduce_all(const Options& options, Common& common) {
   check_names(options.only, plan.stages);
   State state(folder);
   ConsoleMonitor monitor(common.style());
-  Run run{options, common, monitor, sha256_hex(std::string_view(read_file("/proc/self/exe"))) + all.mesh_hash, 0, 0};
+  Run run{options, monitor, sha256_hex(std::string_view(read_file("/proc/self/exe"))) + all.mesh_hash, 0, 0};
   // With --only the others are shown where they were done before.
   std::vector<Stage> stages;
   for (const Stage& stage : plan.stages) {
