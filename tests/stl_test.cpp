@@ -132,11 +132,40 @@ TEST_CASE("STL messages name file, line or byte, and what was found", "[stl][rea
             .message.starts_with("x.stl:3: 'loop' expected after 0 facets, found 'lop'"));
   CHECK(outcome(replaced(text, "vertex ", "vertex x")).fault == "file-syntax");
   CHECK(outcome(text.substr(0, text.size() - 20)).fault == "file-truncated");
+  CHECK(outcome(text.substr(0, text.rfind("endsolid") + 4)).says("the file ends after 12 facets, before 'endsolid'"));
+  CHECK(outcome(replaced(text, "endloop", "end lop")).says("'endloop' expected"));
   CHECK(outcome(text + "rest").fault == "file-truncated"); // perhaps the beginning of a word
   CHECK(outcome(text + "rest of it\n").fault == "file-syntax");
   const std::string bytes = stl_bytes(box({1, 1, 1}));
   CHECK(outcome(bytes.substr(0, 300)).says("at byte 300: the file ends after 4 of 12 facets"));
   CHECK(outcome("off\n").fault == "file-format");
+}
+
+TEST_CASE("STL without endsolid is read where its last facet is whole, and says so", "[stl][readers]") {
+  const std::string text = stl_text(box({1, 1, 1}));
+  const RawMesh mesh = parse_stl(text.substr(0, text.rfind("endsolid")), "x.stl");
+  CHECK(mesh.faces.size() == 12);
+  CHECK(mesh.notes.at(0).find("'endsolid' is missing after 12 facets") != std::string::npos);
+  CHECK(outcome("solid x\n").fault == "file-truncated");
+  const RawMesh two = parse_stl(replaced(text, "endsolid", "solid 2\nendsolid"), "x.stl");
+  CHECK(two.notes.at(0).find("'endsolid' is missing") != std::string::npos);
+}
+
+TEST_CASE("STL comments and colours are skipped and counted", "[stl][readers]") {
+  const std::string text = replaced(stl_text(box({1, 1, 1})), "outer loop", "color 1 0 0\nouter loop # its corners");
+  const RawMesh mesh = parse_stl("# who made it\n" + text, "x.stl");
+  CHECK(mesh.faces.size() == 12);
+  CHECK(mesh.notes.at(1).find("comments and colours were skipped") != std::string::npos);
+}
+
+TEST_CASE("binary STL that announces no facets is read by its length", "[stl][readers]") {
+  std::string bytes = stl_bytes(box({1, 2, 3}));
+  bytes.replace(80, 4, 4, '\0');
+  const RawMesh mesh = parse_stl(bytes, "x.stl");
+  CHECK(mesh.faces.size() == 12);
+  CHECK(mesh.notes.at(0).starts_with("The header announces 0 facets, but 600 bytes follow: 12 facets were read"));
+  CHECK(outcome(bytes.substr(0, bytes.size() - 7)).says("announces 0 facets, and 593 bytes follow"));
+  CHECK(parse_stl(bytes.substr(0, 84), "x.stl").faces.empty());
 }
 
 TEST_CASE("STL files with bytes changed are read or refused by name", "[stl][readers]") {

@@ -76,7 +76,20 @@ private:
                               mesh_.name, bytes_.size(), what));
     };
     if (bytes_.size() < header_bytes) truncated("the file ends within the 84 bytes before the first facet.");
-    const std::uint64_t count = announced(bytes_), found = (bytes_.size() - header_bytes) / facet_bytes;
+    const std::size_t behind = bytes_.size() - header_bytes;
+    const std::uint64_t found = behind / facet_bytes;
+    std::uint64_t count = announced(bytes_);
+    if (count == 0 && behind != 0) {
+      // Programs that write facets as they come leave the number out.
+      if (behind % facet_bytes != 0)
+        truncated(fmt::format("the header announces 0 facets, and {} bytes follow, which are no whole number of facets "
+                              "of {} bytes.",
+                              behind, facet_bytes));
+      count = found;
+      mesh_.notes.push_back(
+          fmt::format("The header announces 0 facets, but {} bytes follow: {} facets were read, by the file's length.",
+                      behind, count));
+    }
     if (found < count) truncated(fmt::format("the file ends after {} of {} facets.", found, count));
     if (count > most_facets)
       throw Error(Fault::too_large, fmt::format("{}: {} facets; up to {} are read.", mesh_.name, count, most_facets));
@@ -99,7 +112,7 @@ private:
 
   void ascii() {
     WordScanner scan(without_byte_order_mark(bytes_), '\0');
-    std::string_view word = scan.word();
+    std::string_view word = keyword(scan);
     if (word.empty()) fail(Fault::file_truncated, scan.line(), "the file is empty. Fetch or export it again.");
     if (!same_word(word, "solid"))
       fail(Fault::file_format, scan.line(),
@@ -107,9 +120,9 @@ private:
     // Less than this no facet takes: "facet normal 0 0 0 outer loop vertex 0 0 0 ... endloop endfacet".
     mesh_.faces.reserve(bytes_.size() / 88);
     mesh_.face_lines.reserve(bytes_.size() / 88);
-    for (; !word.empty(); word = scan.word()) {
+    while (!word.empty()) {
       require(scan, word, "solid");
-      solid(scan);
+      word = solid(scan);
     }
   }
 
@@ -127,28 +140,59 @@ private:
   }
   void require(WordScanner& scan, std::string_view expected) const { require(scan, scan.word(), expected); }
 
-  /// After the word `solid`, to the name behind `endsolid`.
-  void solid(WordScanner& scan) {
+  /// The next word that is none of a comment or of a colour, which some programs write on lines of their own or behind
+  /// what a line holds.
+  std::string_view keyword(WordScanner& scan) {
+    for (;;) {
+      const std::string_view word = scan.word();
+      const bool skipped = word.starts_with('#') || word.starts_with(';') || word.starts_with("//") ||
+                           same_word(word, "comment") || same_word(word, "color") || same_word(word, "colour");
+      if (!skipped) return word;
+      scan.skip_line();
+      ++skipped_;
+    }
+  }
+
+  /// Whether the word is `end` with what is ended glued to it, or behind it.
+  static bool ends(WordScanner& scan, std::string_view word, std::string_view what) {
+    if (same_word(word, "end")) return same_word(scan.word(), what);
+    return word.size() > 3 && same_word(word.substr(0, 3), "end") && same_word(word.substr(3), what);
+  }
+
+  void require_end(WordScanner& scan, std::string_view what) {
+    const std::string_view word = keyword(scan);
+    if (!ends(scan, word, what)) unexpected(scan, word, fmt::format("'end{}'", what));
+  }
+
+  /// After the word `solid`, to the name behind `endsolid`; returns the word behind that.
+  std::string_view solid(WordScanner& scan) {
     std::string_view word = skip_name(scan);
-    if (word.empty()) word = scan.word();
-    for (; same_word(word, "facet"); word = scan.word()) {
+    if (word.empty()) word = keyword(scan);
+    for (; same_word(word, "facet"); word = keyword(scan)) {
       const std::size_t line = scan.line();
-      require(scan, "normal");
+      require(scan, keyword(scan), "normal");
       const Vec3 normal = vector(scan, false);
-      require(scan, "outer");
+      require(scan, keyword(scan), "outer");
       require(scan, "loop");
       std::array<Vec3, 3> corners;
       for (Vec3& corner : corners) {
-        require(scan, "vertex");
+        require(scan, keyword(scan), "vertex");
         corner = vector(scan, true);
       }
-      require(scan, "endloop");
-      require(scan, "endfacet");
+      require_end(scan, "loop");
+      require_end(scan, "facet");
       if (facets_ == most_facets) fail(Fault::too_large, line, fmt::format("more than {} facets.", most_facets));
       facet(normal, corners, line);
     }
-    require(scan, word, "endsolid");
+    if (facets_ != 0 && (word.empty() || same_word(word, "solid"))) {
+      mesh_.notes.push_back(fmt::format("Line {}: the word 'endsolid' is missing after {} facets, the last of which is "
+                                        "whole. If facets are missing, fetch or export the file again.",
+                                        scan.line(), facets_));
+      return word;
+    }
+    if (!ends(scan, word, "solid")) unexpected(scan, word, "'endsolid'");
     if (!skip_name(scan).empty()) fail(Fault::file_syntax, scan.line(), "a facet after the word endsolid.");
+    return keyword(scan);
   }
 
   /// Skips a solid's name, to the line's end or to the words `facet normal`; then the word `facet` is returned.
@@ -177,6 +221,10 @@ private:
     mesh_.notes.push_back(fmt::format("STL has no topology: {} corners of {} facets were welded into {} vertices where "
                                       "their coordinates are exactly equal.",
                                       corners, facets_, vertices));
+    if (skipped_ != 0)
+      mesh_.notes.push_back(fmt::format("{} skipped.", skipped_ == 1
+                                                           ? "1 comment or colour was"
+                                                           : fmt::format("{} comments and colours were", skipped_)));
     if (left_out != 0)
       mesh_.notes.push_back(fmt::format("Facets with two corners at one point were left out: {}.", left_out));
     if (100 * against_ > facets_)
@@ -189,7 +237,7 @@ private:
   std::string_view bytes_;
   RawMesh mesh_;
   PointWelder welder_;
-  std::size_t facets_ = 0, along_ = 0, against_ = 0;
+  std::size_t facets_ = 0, along_ = 0, against_ = 0, skipped_ = 0;
 };
 
 } // namespace
