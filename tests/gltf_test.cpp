@@ -159,7 +159,6 @@ TEST_CASE("glTF numbers that lead out of their place are refused", "[gltf][reade
       {R"("indices":1)", R"("indices":0)", "file-format", "SCALAR"},
       {R"("POSITION":0)", R"("POSITION":1)", "file-format", "VEC3"},
       {R"("POSITION":0)", R"("POSITION":"0")", "file-syntax", "'POSITION'"},
-      {R"("indices":1)", R"("indices":1,"mode":1)", "file-format", "points and lines"},
       {R"("indices":1)", R"("indices":1,"mode":7)", "file-format", "mode 7"},
       {"5123", "5122", "file-format", "5122"},
       {"5126", "5130", "file-format", "5130"},
@@ -195,6 +194,39 @@ TEST_CASE("a glTF index beyond its positions is refused, and one beyond another 
               data);
   CHECK(outcome(text).fault == "mesh-index-range");
   CHECK(outcome(text).says("mesh 0, primitive 1: index 2 names vertex 3"));
+}
+
+TEST_CASE("glTF points and lines are left out with their number", "[gltf][readers]") {
+  const auto left_out = [](int mode) {
+    const RawMesh mesh = parse_gltf(tetrahedron_of(one_node, fmt::format(R"("indices":1,"mode":{})", mode)), "x");
+    CHECK(mesh.vertices.empty());
+    CHECK(mesh.faces.empty());
+    REQUIRE(mesh.notes.size() == 1);
+    return mesh.notes[0];
+  };
+  CHECK(left_out(0) == "left out 12 faces of one or two corners: points and lines, in 1 primitive.");
+  CHECK(left_out(1).starts_with("left out 6 faces"));
+  CHECK(left_out(2).starts_with("left out 12 faces"));
+  CHECK(left_out(3).starts_with("left out 11 faces"));
+  const RawMesh beside =
+      parse_gltf(read_file(std::string(COWGPU_CORPUS) + "/accepted/lines-and-points-beside.gltf"), "x");
+  CHECK(beside.vertices.size() == 8);
+  CHECK(beside.notes ==
+        std::vector<std::string>{"left out 22 faces of one or two corners: points and lines, in 4 primitives."});
+  const Outcome nothing =
+      outcome_of([] { ClosedSurface::from(parse_gltf(tetrahedron_of(one_node, R"("indices":1,"mode":1)"), "x")); });
+  CHECK(nothing.fault == "mesh-empty");
+  CHECK(nothing.says("left out 6 faces"));
+}
+
+TEST_CASE("a sparse glTF accessor of a billion elements and no data takes no memory", "[gltf][readers]") {
+  const std::string text = replaced(replaced(tetrahedron_of(one_node), R"({"bufferView":0,"componentType":5126)",
+                                             R"({"sparse":{"count":0,"indices":{"bufferView":1,"componentType":5123},)"
+                                             R"("values":{"bufferView":0}},"componentType":5126)"),
+                                    R"("count":4)", R"("count":1000000000)");
+  CHECK(outcome(text).fault == "too-large");
+  CHECK(outcome(replaced(text, "1000000000", "9000000000")).says("no 'bufferView'"));
+  if (memory_is_measurable()) CHECK(peak_growth([&] { outcome(text); }) < std::size_t{8} << 20);
 }
 
 TEST_CASE("glTF scenes that would grow beyond all bounds are refused", "[gltf][readers]") {

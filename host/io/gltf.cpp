@@ -2,6 +2,7 @@
 
 #include "host/io/gltf_document.hpp"
 #include "host/io/sha256.hpp"
+#include "host/mesh/topology.hpp"
 #include "host/mesh/weld.hpp"
 
 #include <fmt/format.h>
@@ -9,9 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
@@ -19,15 +18,13 @@
 namespace cowgpu {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the reader copies memory");
-
 using Json = nlohmann::json;
 
 constexpr std::size_t deepest_node = 1000;
 constexpr std::uint64_t spare_bytes = std::uint64_t{32} << 20; // of the mesh, beyond 4 times the file
 constexpr std::uint64_t most_primitives = 1000000;             // with their instances; each counts up to three times
 
-enum Mode : std::uint64_t { triangles = 4, strip = 5, fan = 6 };
+enum Mode : std::uint64_t { points = 0, lines = 1, line_loop = 2, line_strip = 3, triangles = 4, strip = 5, fan = 6 };
 
 /// x -> matrix x + shift.
 struct Placement {
@@ -194,6 +191,7 @@ private:
     GltfNumbers points;
     std::optional<GltfNumbers> indices;
     std::size_t faces = 0;
+    std::size_t short_faces = 0; ///< points or lines, which bound nothing
   };
 
   /// Nothing for a primitive without positions: there is nothing to be seen, says the specification.
@@ -202,17 +200,20 @@ private:
     if (!attributes || !document_.member(*attributes, "POSITION")) return {};
     Primitive primitive;
     primitive.mode = document_.whole(json, "mode", what, triangles);
-    if (primitive.mode != triangles && primitive.mode != strip && primitive.mode != fan)
-      document_.fail(Fault::file_format, what,
-                     primitive.mode < triangles
-                         ? "points and lines bound no volume and are not read. Export triangles only."
-                         : fmt::format("there is no mode {}.", primitive.mode));
+    if (primitive.mode > fan)
+      document_.fail(Fault::file_format, what, fmt::format("there is no mode {}.", primitive.mode));
     targets_ = targets_ || document_.member(json, "targets");
     primitive.positions = document_.whole(*attributes, "POSITION", what);
     primitive.points = document_.accessor(primitive.positions, "VEC3", what);
     if (document_.member(json, "indices"))
       primitive.indices = document_.accessor(document_.whole(json, "indices", what), "SCALAR", what);
     const std::size_t corners = primitive.indices ? primitive.indices->count : primitive.points.count;
+    if (primitive.mode < triangles) {
+      primitive.short_faces = primitive.mode == lines                   ? corners / 2
+                              : primitive.mode == line_strip && corners ? corners - 1
+                                                                        : corners;
+      return primitive;
+    }
     if (primitive.mode == triangles && corners % 3 != 0)
       document_.fail(Fault::file_syntax, what, fmt::format("{} corners make no whole number of triangles.", corners));
     primitive.faces = primitive.mode == triangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
@@ -223,27 +224,28 @@ private:
                      const std::string& what) {
     const auto primitive = primitive_of(json, what);
     if (!primitive) return;
+    if (primitive->mode < triangles) {
+      short_faces_ += primitive->short_faces;
+      ++short_primitives_;
+      return;
+    }
     const GltfNumbers& points = primitive->points;
     const auto [place, is_new] =
         first_vertex.try_emplace(primitive->positions, static_cast<std::uint32_t>(part.vertices.size()));
     const std::uint32_t base = place->second;
-    if (is_new)
-      for (std::size_t v = 0; v < points.count; ++v) {
-        float xyz[3];
-        std::memcpy(xyz, points.data + v * points.stride, sizeof xyz);
-        part.vertices.emplace_back(double(xyz[0]), double(xyz[1]), double(xyz[2]));
-      }
+    if (is_new) {
+      document_.require_increasing(points, what);
+      for (std::size_t v = 0; v < points.count; ++v)
+        part.vertices.emplace_back(points.component(v, 0), points.component(v, 1), points.component(v, 2));
+    }
     if (!primitive->indices) {
       add_faces(part, *primitive, [&](std::size_t i) { return std::uint32_t(base + i); });
       return;
     }
     const GltfNumbers& indices = *primitive->indices;
+    document_.require_increasing(indices, what);
     add_faces(part, *primitive, [&](std::size_t i) {
-      std::uint32_t index = 0; // little endian: a shorter number fills its lower bytes
-      std::memcpy(&index, indices.data + i * indices.stride,
-                  indices.component_type == gltf_ubyte    ? 1
-                  : indices.component_type == gltf_ushort ? 2
-                                                          : 4);
+      const std::uint32_t index = indices.index(i);
       if (index >= points.count)
         document_.fail(
             Fault::mesh_index_range, what,
@@ -254,14 +256,18 @@ private:
 
   /// The triangles, of whose corners `at` gives the vertices (glTF 2.0, 3.7.2.1).
   template <class At>
-  static void add_faces(RawMesh& part, const Primitive& primitive, At&& at) {
+  void add_faces(RawMesh& part, const Primitive& primitive, At&& at) {
     const std::uint64_t mode = primitive.mode;
     for (std::size_t f = 0; f < primitive.faces; ++f) {
       if (mode == triangles)
         part.faces.push_back({at(3 * f), at(3 * f + 1), at(3 * f + 2)});
-      else if (mode == strip)
-        part.faces.push_back({at(f), at(f + 1 + f % 2), at(f + 2 - f % 2)});
-      else
+      else if (mode == strip) {
+        const Face face = {at(f), at(f + 1 + f % 2), at(f + 2 - f % 2)};
+        if (repeats_vertex(face))
+          ++joins_;
+        else
+          part.faces.push_back(face);
+      } else
         part.faces.push_back({at(f + 1), at(f + 2), at(0)});
     }
   }
@@ -280,7 +286,7 @@ private:
     std::set<std::uint64_t> seen;
     for (std::size_t p = 0; p < primitives.size(); ++p) {
       const auto primitive = primitive_of(primitives[p], primitive_name(what, p));
-      if (!primitive) continue;
+      if (!primitive || primitive->mode < triangles) continue;
       if (seen.insert(primitive->positions).second) size.vertices += primitive->points.count;
       size.faces += primitive->faces;
     }
@@ -325,6 +331,15 @@ private:
     if (skinned_ != 0)
       document_.notes.push_back(fmt::format("{} skinned {} as it was bound, without its skeleton.", skinned_,
                                             skinned_ == 1 ? "mesh was read" : "meshes were read, each"));
+    if (short_faces_ != 0)
+      document_.notes.push_back(
+          fmt::format("left out {} of one or two corners: points and lines, in {}.",
+                      short_faces_ == 1 ? "1 face" : fmt::format("{} faces", short_faces_),
+                      short_primitives_ == 1 ? "1 primitive" : fmt::format("{} primitives", short_primitives_)));
+    if (joins_ != 0)
+      document_.notes.push_back(fmt::format("{} without area, which {} pieces of strips, {} left out.",
+                                            joins_ == 1 ? "1 triangle" : fmt::format("{} triangles", joins_),
+                                            joins_ == 1 ? "joins" : "join", joins_ == 1 ? "was" : "were"));
     if (targets_) document_.notes.push_back("Morph targets were ignored: shapes are the undeformed ones.");
     mesh_.notes = std::move(document_.notes);
   }
@@ -337,6 +352,7 @@ private:
   bool closed_ = true;                  // every instance by itself
   bool targets_ = false;
   std::size_t welded_ = 0, collapsed_ = 0, mirrored_ = 0, skinned_ = 0;
+  std::uint64_t short_faces_ = 0, short_primitives_ = 0, joins_ = 0;
 };
 
 } // namespace

@@ -18,8 +18,10 @@ namespace cowgpu {
 ///
 /// Nodes' transforms are applied, to every instance of a mesh; where one mirrors (negative determinant) its faces are
 /// turned, so that outward stays outward. Axes and unit stay the file's (glTF: y up, metres). Read are triangles, strips
-/// and fans with float positions and indices of any size, or none; in the order of the file, a mesh's primitives that
-/// share their positions sharing vertices. Data come from the GLB's own chunk and from data: URIs; no other file is
+/// and fans with indices of any size, or none, and positions that are floats or, by KHR_mesh_quantization, bytes and
+/// shorts, normalized or not; sparse accessors too; in the order of the file, a mesh's primitives that share their
+/// positions sharing vertices. Points and lines bound nothing, and triangles of strips that name a vertex twice have no
+/// area: they are left out with a note of how many. Data come from the GLB's own chunk and from data: URIs; no other file is
 /// opened. Normals, texture, materials, pictures, cameras, animations are ignored; morph targets and skins with a note
 /// (a skinned mesh stands as it was bound).
 ///
@@ -33,7 +35,7 @@ namespace cowgpu {
 /// primitives, are refused before they are made.
 ///
 /// Throws Error with
-/// - file_format: no glTF 2; points or lines; sparse accessors; positions that are not floats (KHR_mesh_quantization);
+/// - file_format: no glTF 2; other positions, as shorts without the extension;
 ///   required extensions (KHR_draco_mesh_compression ...), and instances by EXT_mesh_gpu_instancing; outside files;
 /// - file_syntax: broken JSON; numbers that lead out of their list, view or buffer; a node that is its own ancestor or has
 ///   two parents, or lies more than 1000 deep; a transform that is not affine;

@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
 namespace cowgpu {
 namespace {
+
+static_assert(std::endian::native == std::endian::little, "the reader copies memory");
 
 using Json = nlohmann::json;
 
@@ -24,8 +27,8 @@ const char* const whole_file = "the file";
 constexpr std::string_view left_out[] = {"animations", "cameras", "extras", "images",   "materials",
                                          "max",        "min",     "name",   "samplers", "textures"};
 // Extensions that leave shapes alone, by the beginning of their names.
-constexpr std::string_view harmless[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_",
-                                         "EXT_lights_",    "KHR_xmp",      "MSFT_texture_"};
+constexpr std::string_view harmless[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_",  "KHR_lights_",
+                                         "EXT_lights_",    "KHR_xmp",      "MSFT_texture_", "KHR_mesh_quantization"};
 
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -142,10 +145,58 @@ std::optional<std::string> from_base64(std::string_view text) {
 }
 
 std::size_t component_bytes(int type) {
-  return type == gltf_ubyte ? 1 : type == gltf_ushort ? 2 : 4;
+  return type == gltf_byte || type == gltf_ubyte ? 1 : type == gltf_short || type == gltf_ushort ? 2 : 4;
+}
+
+std::uint32_t unsigned_at(const char* at, int type) {
+  std::uint32_t value = 0; // little endian: a shorter number fills its lower bytes
+  std::memcpy(&value, at, component_bytes(type));
+  return value;
+}
+
+template <class Number>
+double number_at(const char* at) {
+  Number value;
+  std::memcpy(&value, at, sizeof value);
+  return double(value);
 }
 
 } // namespace
+
+const char* GltfNumbers::at(std::size_t i) const {
+  std::size_t low = 0, high = sparse.count;
+  while (low < high) {
+    const std::size_t middle = low + (high - low) / 2;
+    const std::uint32_t index =
+        unsigned_at(sparse.indices + middle * component_bytes(sparse.index_type), sparse.index_type);
+    if (index == i) return sparse.values + middle * element;
+    if (index < i)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return data ? data + i * stride : nullptr;
+}
+
+std::uint32_t GltfNumbers::index(std::size_t i) const {
+  const char* found = at(i);
+  return found ? unsigned_at(found, component_type) : 0;
+}
+
+double GltfNumbers::component(std::size_t i, std::size_t c) const {
+  const char* found = at(i);
+  if (!found) return 0;
+  found += c * component_bytes(component_type);
+  switch (component_type) {
+  case gltf_byte:
+    return normalized ? std::max(number_at<std::int8_t>(found) / 127, -1.0) : number_at<std::int8_t>(found);
+  case gltf_ubyte: return number_at<std::uint8_t>(found) / (normalized ? 255 : 1);
+  case gltf_short:
+    return normalized ? std::max(number_at<std::int16_t>(found) / 32767, -1.0) : number_at<std::int16_t>(found);
+  case gltf_ushort: return number_at<std::uint16_t>(found) / (normalized ? 65535 : 1);
+  default: return number_at<float>(found);
+  }
+}
 
 GltfDocument::GltfDocument(std::string_view bytes, const std::string& name) : name_(name) {
   parse(bytes.starts_with("glTF") ? container(bytes) : bytes, bytes.size());
@@ -206,8 +257,7 @@ void GltfDocument::require_known_extensions() const {
     const auto& text = extension.get_ref<const std::string&>();
     if (std::none_of(std::begin(harmless), std::end(harmless), [&](std::string_view h) { return text.starts_with(h); }))
       fail(Fault::file_format, whole_file,
-           fmt::format("it requires the extension {}, which is not read. Export it without (no compression, no "
-                       "quantization).",
+           fmt::format("it requires the extension {}, which is not read. Export it without (no compression).",
                        shown(text, 60)));
   }
 }
@@ -289,26 +339,17 @@ std::string_view GltfDocument::buffer(std::uint64_t index, const std::string& wh
   return bytes.substr(0, length);
 }
 
-GltfNumbers GltfDocument::accessor(std::uint64_t index, const char* type, const std::string& what) {
-  const Json& accessor = object("accessors", index, what);
-  const std::string self = fmt::format("{}, accessor {}", what, index);
-  if (member(accessor, "sparse")) fail(Fault::file_format, self, "sparse accessors are not read. Export it without.");
-  if (!member(accessor, "bufferView")) fail(Fault::file_format, self, "it has no 'bufferView', so no data.");
-  const Json* kind = member(accessor, "type");
-  if (!kind || *kind != type) fail(Fault::file_format, self, fmt::format("its type must be {}.", type));
-  const bool vector = std::string_view(type) == "VEC3";
+bool GltfDocument::names_extension(std::string_view extension) const {
+  for (const char* key : {"extensionsRequired", "extensionsUsed"})
+    for (const Json& one : list(root_, key, whole_file))
+      if (one.is_string() && one.get_ref<const std::string&>() == extension) return true;
+  return false;
+}
 
-  GltfNumbers numbers;
-  const std::uint64_t component = whole(accessor, "componentType", self);
-  const bool known =
-      vector ? component == gltf_float : component == gltf_ubyte || component == gltf_ushort || component == gltf_uint;
-  if (!known)
-    fail(Fault::file_format, self,
-         fmt::format("numbers of the component type {} are not read here, only {}.", component,
-                     vector ? "floats (5126)" : "unsigned integers (5121, 5123, 5125)"));
-  numbers.component_type = static_cast<int>(component);
-  const std::size_t element = (vector ? 3 : 1) * component_bytes(numbers.component_type);
-
+/// The first of `count` elements of the bufferView that an accessor, or a part of a sparse one, names. With `stride` they
+/// may lie apart, and it receives how far.
+const char* GltfDocument::elements(const Json& accessor, std::uint64_t count, std::size_t element, std::size_t* stride,
+                                   const std::string& self) {
   const std::uint64_t view_index = whole(accessor, "bufferView", self);
   const Json& view = object("bufferViews", view_index, self);
   const std::string view_name = fmt::format("bufferView {}", view_index);
@@ -317,20 +358,82 @@ GltfNumbers GltfDocument::accessor(std::uint64_t index, const char* type, const 
   if (begin > bytes.size() || length > bytes.size() - begin)
     fail(Fault::file_syntax, view_name,
          fmt::format("its bytes {} to {} lie outside of its buffer of {} bytes.", begin, begin + length, bytes.size()));
-  const std::uint64_t stride = whole(view, "byteStride", view_name, element);
-  if (stride < element || stride > 252)
-    fail(Fault::file_syntax, view_name, fmt::format("its byteStride {} must be from {} to 252.", stride, element));
-
-  const std::uint64_t offset = whole(accessor, "byteOffset", self, 0), count = whole(accessor, "count", self);
+  const std::uint64_t apart = stride ? whole(view, "byteStride", view_name, element) : element;
+  if (apart < element || apart > 252)
+    fail(Fault::file_syntax, view_name, fmt::format("its byteStride {} must be from {} to 252.", apart, element));
+  const std::uint64_t offset = whole(accessor, "byteOffset", self, 0);
   const std::uint64_t room = offset <= length ? length - offset : 0;
-  if (offset > length || (count != 0 && (room < element || (room - element) / stride < count - 1)))
+  if (offset > length || (count != 0 && (room < element || (room - element) / apart < count - 1)))
     fail(
         Fault::file_syntax, self,
         fmt::format("its {} elements from byte {} do not fit into its bufferView of {} bytes.", count, offset, length));
-  numbers.count = count;
-  numbers.stride = stride;
-  numbers.data = bytes.data() + begin + offset;
+  if (stride) *stride = apart;
+  return bytes.data() + begin + offset;
+}
+
+GltfNumbers GltfDocument::accessor(std::uint64_t index, const char* type, const std::string& what) {
+  const Json& accessor = object("accessors", index, what);
+  const std::string self = fmt::format("{}, accessor {}", what, index);
+  const Json* kind = member(accessor, "type");
+  if (!kind || *kind != type) fail(Fault::file_format, self, fmt::format("its type must be {}.", type));
+  const bool vector = std::string_view(type) == "VEC3";
+
+  GltfNumbers numbers;
+  const auto is_index = [](std::uint64_t t) { return t == gltf_ubyte || t == gltf_ushort || t == gltf_uint; };
+  const std::uint64_t component = whole(accessor, "componentType", self);
+  const bool quantized = vector && component >= gltf_byte && component <= gltf_ushort;
+  if (quantized && !names_extension("KHR_mesh_quantization"))
+    fail(Fault::file_format, self,
+         fmt::format("positions of the component type {} are read where 'extensionsRequired' names "
+                     "KHR_mesh_quantization, and here it does not. Export them as floats (5126).",
+                     component));
+  if (!(vector ? quantized || component == gltf_float : is_index(component)))
+    fail(Fault::file_format, self,
+         fmt::format("numbers of the component type {} are not read here, only {}.", component,
+                     vector ? "floats (5126)" : "unsigned integers (5121, 5123, 5125)"));
+  numbers.component_type = static_cast<int>(component);
+  const Json* normalized = member(accessor, "normalized");
+  numbers.normalized = vector && normalized && *normalized == true;
+  numbers.element = (vector ? 3 : 1) * component_bytes(numbers.component_type);
+  numbers.count = whole(accessor, "count", self);
+  const Json* sparse = member(accessor, "sparse");
+  if (member(accessor, "bufferView"))
+    numbers.data = elements(accessor, numbers.count, numbers.element, &numbers.stride, self);
+  else if (!sparse)
+    fail(Fault::file_format, self, "it has no 'bufferView', so no data.");
+  else if (numbers.count > 0xffffffff)
+    fail(Fault::file_syntax, self, fmt::format("it announces {} elements and has no 'bufferView'.", numbers.count));
+  if (!sparse) return numbers;
+
+  numbers.sparse.count = whole(*sparse, "count", self);
+  const Json *indices = member(*sparse, "indices"), *values = member(*sparse, "values");
+  if (numbers.sparse.count > numbers.count || !indices || !values)
+    fail(Fault::file_syntax, self,
+         fmt::format("'sparse' must have 'indices', 'values' and a 'count' of at most {}.", numbers.count));
+  const std::uint64_t index_type = whole(*indices, "componentType", self);
+  if (!is_index(index_type))
+    fail(Fault::file_syntax, self,
+         fmt::format("the indices of 'sparse' are of the component type {}, and must be unsigned integers (5121, 5123, "
+                     "5125).",
+                     index_type));
+  numbers.sparse.index_type = static_cast<int>(index_type);
+  numbers.sparse.indices =
+      elements(*indices, numbers.sparse.count, component_bytes(numbers.sparse.index_type), nullptr, self);
+  numbers.sparse.values = elements(*values, numbers.sparse.count, numbers.element, nullptr, self);
   return numbers;
+}
+
+void GltfDocument::require_increasing(const GltfNumbers& numbers, const std::string& what) const {
+  std::uint64_t next = 0;
+  for (std::size_t i = 0; i < numbers.sparse.count; ++i) {
+    const std::uint32_t index =
+        unsigned_at(numbers.sparse.indices + i * component_bytes(numbers.sparse.index_type), numbers.sparse.index_type);
+    if (index < next || index >= numbers.count)
+      fail(Fault::file_syntax, what,
+           fmt::format("index {} of a sparse accessor is {}; they must increase and stay below {}.", i, index,
+                       numbers.count));
+    next = std::uint64_t(index) + 1;
+  }
 }
 
 } // namespace cowgpu
