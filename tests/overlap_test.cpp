@@ -184,7 +184,8 @@ TEST_CASE("winding numbers by the tree of boxes are those of the distance field"
 
 TEST_CASE("inscribed balls are as large as they are", "[inscribed]") {
   const auto radius = [](const RawMesh& mesh, const Vec3& about) {
-    return inscribed_radius(mesh.vertices, mesh.faces, plan::Bvh(mesh.vertices, mesh.faces), about);
+    const plan::Bvh tree(mesh.vertices, mesh.faces);
+    return inscribed_radius(mesh.vertices, mesh.faces, tree, tree, about);
   };
   CHECK(radius(box({2, 3, 5}), {0.75, 1, 2}) == 0.75);
   CHECK_FALSE(radius(box({2, 3, 5}), {3, 1, 2}));
@@ -192,14 +193,24 @@ TEST_CASE("inscribed balls are as large as they are", "[inscribed]") {
   CHECK_FALSE(radius(flipped(box({2, 3, 5})), {0.75, 1, 2}));
 
   const auto largest = [](const RawMesh& mesh) {
+    const plan::Bvh tree(mesh.vertices, mesh.faces);
+    const TriangleSheet sheet =
+        body_boundary(mesh.vertices, mesh.faces, tree,
+                      self_intersections(mesh.vertices, mesh.faces, tree, silent_monitor()), silent_monitor());
     const LargestBall ball =
-        largest_ball(mesh.vertices, mesh.faces, plan::Bvh(mesh.vertices, mesh.faces), silent_monitor());
+        largest_ball(mesh.vertices, mesh.faces, tree, plan::Bvh(sheet.vertices, sheet.faces), silent_monitor());
     CHECK(ball.bound >= ball.radius);
     return ball;
   };
-  for (const auto& [mesh, truth] : {std::pair(box({2, 3, 5}, {7, 8, 9}), 1.0),
-                                    {together(box({2, 3, 5}), box({4, 4, 4}, {9, 0, 0})), 2.0},
-                                    {rotated(box({4, 4, 4}), some_rotation()), 2.0}}) {
+  for (const auto& [mesh, truth] :
+       {std::pair(box({2, 3, 5}, {7, 8, 9}), 1.0),
+        {together(box({2, 3, 5}), box({4, 4, 4}, {9, 0, 0})), 2.0},
+        {rotated(box({4, 4, 4}), some_rotation()), 2.0},
+        // Pieces of the surface inside the body do not bound it.
+        {together(box({2, 2, 2}), box({2, 2, 2}, {0.5, 0, 0})), 1.0},
+        {together(box({2, 2, 2}), box({1, 1, 1}, {0.5, 0.5, 0.5})), 1.0},
+        {together(box({4, 4, 4}), rotated(box({1, 1, 9}, {1, 1, -3}), some_rotation())), 2.0},
+        {together(box({2, 2, 2}), flipped(box({2, 2, 2}, {2.5, 0, 0}))), 1.0}}) {
     const LargestBall ball = largest(mesh);
     INFO(ball.radius << " to " << ball.bound);
     CHECK(ball.radius <= truth * (1 + 1e-14));

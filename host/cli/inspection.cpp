@@ -89,12 +89,15 @@ Inspection inspect(RawMesh mesh, Monitor& monitor, unsigned threads) {
   const plan::Bvh tree(vertices, faces);
   found.intersections = self_intersections(vertices, faces, tree, monitor, threads);
   if (!a.volume) return found;
-  if (found.intersections->complete)
-    found.overlap = overlap(vertices, faces, tree, *found.intersections, monitor, threads);
-  if (const LargestBall ball = largest_ball(vertices, faces, tree, monitor); ball.radius > 0) found.largest_ball = ball;
+  if (!found.intersections->complete) return found;
+  found.overlap = overlap(vertices, faces, tree, *found.intersections, monitor, threads);
+  const TriangleSheet sheet = body_boundary(vertices, faces, tree, *found.intersections, monitor, threads);
+  const plan::Bvh boundary(sheet.vertices, sheet.faces);
+  if (const LargestBall ball = largest_ball(vertices, faces, tree, boundary, monitor); ball.radius > 0)
+    found.largest_ball = ball;
   if (!a.centre_of_mass) return found;
   found.brillouin_radius = brillouin_radius(vertices, faces, *a.centre_of_mass);
-  found.inscribed_radius = inscribed_radius(vertices, faces, tree, *a.centre_of_mass);
+  found.inscribed_radius = inscribed_radius(vertices, faces, tree, boundary, *a.centre_of_mass);
   return found;
 }
 

@@ -20,9 +20,10 @@ struct Inspection {
   std::string moments = "yes", maps = "yes";      ///< which of the two types it satisfies, or the reason why not
   std::optional<SelfIntersections> intersections; ///< of finite meshes with faces
   std::optional<Overlap> overlap;                 ///< of closed, consistently oriented ones whose pairs are all known
-  std::optional<double> brillouin_radius;         ///< about the centre of mass
-  std::optional<double> inscribed_radius;         ///< about the centre of mass, if that lies inside
-  std::optional<LargestBall> largest_ball;        ///< if there is a point inside
+  // The radii are missing too where not all pairs are known.
+  std::optional<double> brillouin_radius;  ///< about the centre of mass
+  std::optional<double> inscribed_radius;  ///< about the centre of mass, if that lies inside
+  std::optional<LargestBall> largest_ball; ///< if there is a point inside
 };
 
 /// The mesh is judged as it is. Throws Error(mesh_index_range, interrupted).

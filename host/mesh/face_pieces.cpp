@@ -40,7 +40,7 @@ void add_crossing(const Riser& p, const Riser& q, std::vector<double>& heights) 
 } // namespace
 
 void for_each_piece(const Vec2& a, const Vec2& b, const Vec2& c, std::span<const Segment2> segments,
-                    const std::function<void(const Vec2& middle, double fraction)>& piece) {
+                    const std::function<void(const FacePiece& piece)>& each) {
   const double bottom = std::min({a.y(), b.y(), c.y()}), top = std::max({a.y(), b.y(), c.y()});
   const double area = std::abs(across(b - a, c - a)) / 2;
   std::vector<double> heights = {a.y(), b.y(), c.y()};
@@ -62,7 +62,7 @@ void for_each_piece(const Vec2& a, const Vec2& b, const Vec2& c, std::span<const
 
   struct Place {
     double x;
-    bool own;
+    const Riser* riser;
   };
   std::vector<Place> row;
   std::vector<const Riser*> active;
@@ -73,19 +73,23 @@ void for_each_piece(const Vec2& a, const Vec2& b, const Vec2& c, std::span<const
     while (next < risers.size() && risers[next].low.y() <= low) active.push_back(&risers[next++]);
     std::erase_if(active, [&](const Riser* riser) { return riser->high.y() <= low; });
     row.clear();
-    double left = INFINITY, right = -INFINITY;
+    Place left{INFINITY, nullptr}, right{-INFINITY, nullptr}; // where the triangle begins and ends
     for (const Riser* riser : active) {
-      const double x = riser->x(middle);
-      row.push_back({x, riser->own});
+      const Place place{riser->x(middle), riser};
+      row.push_back(place);
       if (!riser->own) continue;
-      left = std::min(left, x);
-      right = std::max(right, x);
+      if (place.x < left.x) left = place;
+      if (place.x > right.x) right = place;
     }
     std::sort(row.begin(), row.end(), [](const Place& p, const Place& q) { return p.x < q.x; });
     for (std::size_t i = 0; i + 1 < row.size(); ++i) {
-      const double from = std::max(left, row[i].x), to = std::min(right, row[i + 1].x);
-      const double fraction = (to - from) * (high - low) / area;
-      if (to > from && fraction > least_fraction) piece({from / 2 + to / 2, middle}, fraction);
+      const Place &from = row[i].x < left.x ? left : row[i], &to = row[i + 1].x > right.x ? right : row[i + 1];
+      const double fraction = (to.x - from.x) * (high - low) / area;
+      if (to.x > from.x && fraction > least_fraction)
+        each({{from.x / 2 + to.x / 2, middle},
+              fraction,
+              {Vec2(from.riser->x(low), low), Vec2(to.riser->x(low), low), Vec2(to.riser->x(high), high),
+               Vec2(from.riser->x(high), high)}});
     }
   }
 }

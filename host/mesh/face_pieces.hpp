@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <functional>
 #include <span>
 #include <utility>
@@ -15,11 +16,16 @@ namespace cowgpu {
 using Vec2 = Eigen::Vector2d;
 using Segment2 = std::pair<Vec2, Vec2>;
 
+struct FacePiece {
+  Vec2 middle;                 ///< a point inside
+  double fraction;             ///< of the triangle's area
+  std::array<Vec2, 4> corners; ///< counter-clockwise; two of a triangle's are the same
+};
+
 /// Cuts the triangle a, b, c, which must have area, into trapezoids and triangles such that no segment passes through the
 /// inside of one: by horizontals through every end of a segment and every crossing of two. Segments may leave the triangle.
-/// Calls `piece(middle, fraction)` with a point of each inside and its part of the area; pieces below 1e-14 of the area are
-/// left out. Time grows with the segments squared where many lie at one height.
+/// Pieces below 1e-14 of the area are left out. Time grows with the segments squared where many lie at one height.
 void for_each_piece(const Vec2& a, const Vec2& b, const Vec2& c, std::span<const Segment2> segments,
-                    const std::function<void(const Vec2& middle, double fraction)>& piece);
+                    const std::function<void(const FacePiece& piece)>& each);
 
 } // namespace cowgpu

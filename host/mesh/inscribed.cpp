@@ -24,19 +24,19 @@ struct Cell {
 } // namespace
 
 std::optional<double> inscribed_radius(std::span<const Vec3> vertices, std::span<const Face> faces,
-                                       const plan::Bvh& tree, const Vec3& about) {
+                                       const plan::Bvh& tree, const plan::Bvh& boundary, const Vec3& about) {
   if (winding_number(tree, vertices, faces, about) <= 0) return std::nullopt;
-  return std::sqrt(tree.closest(about).distance2);
+  return std::sqrt(boundary.closest(about).distance2);
 }
 
 LargestBall largest_ball(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
-                         Monitor& monitor, std::uint32_t most) {
+                         const plan::Bvh& boundary, Monitor& monitor, std::uint32_t most) {
   LargestBall best;
   if (tree.nodes().empty()) return best;
   std::uint32_t looked_at = 0;
   std::priority_queue<Cell> cells;
   const auto look = [&](const Vec3& middle, const Vec3& half, double bound_above) {
-    const double distance = std::sqrt(tree.closest(middle).distance2), reach = half.norm();
+    const double distance = std::sqrt(boundary.closest(middle).distance2), reach = half.norm();
     ++looked_at;
     if (distance + reach <= best.radius) return;
     const bool inside = winding_number(tree, vertices, faces, middle) > 0;

@@ -18,12 +18,14 @@ namespace {
 
 using Wide3 = Eigen::Matrix<long double, 3, 1>;
 
-/// For each of the two regions the part of a face that bounds it, negative where the region lies in front.
-using Parts = std::array<double, 2>;
+enum Region { overlapped, inverted, inside, region_count };
+
+/// For each region the part of a face that bounds it, negative where the region lies in front.
+using Parts = std::array<double, region_count>;
 
 /// Whether points of this winding number belong to the regions.
-std::array<int, 2> regions(int winding) {
-  return {winding >= 2, winding < 0};
+std::array<int, region_count> regions(int winding) {
+  return {winding >= 2, winding<0, winding> 0};
 }
 
 class Boundary {
@@ -58,8 +60,9 @@ public:
     return parts_at(face, (vertices_[f[0]] + vertices_[f[1]] + vertices_[f[2]]) / 3, {});
   }
 
-  /// Of a face that others meet.
-  Parts cut(std::size_t face) const {
+  /// Of a face that others meet: `each(parts, piece, lifted)` for every piece, with what takes its points back to space.
+  template <class Each>
+  void cut(std::size_t face, Each&& each) const {
     const Face& f = faces_[face];
     int axis = 0;
     area_vector(face).cwiseAbs().maxCoeff(&axis);
@@ -79,14 +82,19 @@ public:
     }
     const Vec2 a = seen(p), b = seen(vertices_[f[1]]), c = seen(vertices_[f[2]]), u2 = b - a, v2 = c - a;
     const double turn = u2.x() * v2.y() - u2.y() * v2.x();
+    if (turn == 0) return;
+    const auto lifted = [&](const Vec2& q) -> Vec3 {
+      const Vec2 w = q - a;
+      return p + (w.x() * v2.y() - w.y() * v2.x()) / turn * u + (u2.x() * w.y() - u2.y() * w.x()) / turn * v;
+    };
+    for_each_piece(a, b, c, segments,
+                   [&](const FacePiece& piece) { each(parts_at(face, lifted(piece.middle), stacked), piece, lifted); });
+  }
+
+  Parts cut(std::size_t face) const {
     Parts sum{};
-    if (turn == 0) return sum;
-    for_each_piece(a, b, c, segments, [&](const Vec2& middle, double fraction) {
-      const Vec2 w = middle - a;
-      const Vec3 point =
-          p + (w.x() * v2.y() - w.y() * v2.x()) / turn * u + (u2.x() * w.y() - u2.y() * w.x()) / turn * v;
-      const Parts here = parts_at(face, point, stacked);
-      for (std::size_t r = 0; r < sum.size(); ++r) sum[r] += fraction * here[r];
+    cut(face, [&](const Parts& here, const FacePiece& piece, const auto&) {
+      for (std::size_t r = 0; r < sum.size(); ++r) sum[r] += piece.fraction * here[r];
     });
     return sum;
   }
@@ -155,6 +163,31 @@ std::vector<std::uint32_t> patches(std::span<const Vec3> vertices, std::span<con
   return patch;
 }
 
+/// Of cut faces the sum over their pieces.
+std::vector<Parts> parts_of_faces(std::span<const Vec3> vertices, std::span<const Face> faces, const Boundary& boundary,
+                                  Monitor& monitor, unsigned threads) {
+  const std::vector<std::uint32_t> patch = patches(vertices, faces, boundary);
+  std::vector<Parts> parts(faces.size());
+  constexpr std::size_t faces_a_task = 256, tasks_a_part = 64;
+  const std::size_t tasks = (faces.size() + faces_a_task - 1) / faces_a_task;
+  for (std::size_t part = 0; part < tasks; part += tasks_a_part) {
+    monitor.progress("overlapped volume", double(part) / double(tasks));
+    parallel_for(threads, std::min(tasks_a_part, tasks - part), [&](std::size_t task, unsigned) {
+      const std::size_t first = (part + task) * faces_a_task;
+      for (std::size_t f = first; f < std::min(first + faces_a_task, faces.size()); ++f) {
+        if (boundary.is_flat(f)) continue;
+        check_stop(monitor);
+        if (boundary.is_cut(f))
+          parts[f] = boundary.cut(f);
+        else if (patch[f] == f)
+          parts[f] = boundary.whole(f);
+      }
+    });
+  }
+  for (std::size_t f = 0; f < faces.size(); ++f) parts[f] = parts[patch[f]];
+  return parts;
+}
+
 RegionVolume region_volume(std::span<const Vec3> vertices, std::span<const Face> faces, const Boundary& boundary,
                            const std::vector<Parts>& parts, std::size_t region) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -186,7 +219,7 @@ std::array<RegionVolume, 2> sampled_volumes(std::span<const Vec3> vertices, std:
   constexpr double ratio = 1.22074408460575947536;
   const Vec3 step(1 / ratio, 1 / (ratio * ratio), 1 / (ratio * ratio * ratio));
   const Vec3 low = tree.nodes()[0].low, sides = tree.nodes()[0].high - low;
-  std::vector<std::array<std::size_t, 2>> hits(tasks);
+  std::vector<std::array<std::size_t, region_count>> hits(tasks);
   parallel_for(threads, tasks, [&](std::size_t task, unsigned) {
     check_stop(monitor);
     for (std::size_t i = 0; i < points_a_task; ++i) {
@@ -212,27 +245,9 @@ std::array<RegionVolume, 2> sampled_volumes(std::span<const Vec3> vertices, std:
 Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
                 const SelfIntersections& found, Monitor& monitor, unsigned threads) {
   const Boundary boundary(vertices, faces, tree, found);
-  const std::vector<std::uint32_t> patch = patches(vertices, faces, boundary);
-  std::vector<Parts> parts(faces.size());
-  constexpr std::size_t faces_a_task = 256, tasks_a_part = 64;
-  const std::size_t tasks = (faces.size() + faces_a_task - 1) / faces_a_task;
-  for (std::size_t part = 0; part < tasks; part += tasks_a_part) {
-    monitor.progress("overlapped volume", double(part) / double(tasks));
-    parallel_for(threads, std::min(tasks_a_part, tasks - part), [&](std::size_t task, unsigned) {
-      const std::size_t first = (part + task) * faces_a_task;
-      for (std::size_t f = first; f < std::min(first + faces_a_task, faces.size()); ++f) {
-        if (boundary.is_flat(f)) continue;
-        check_stop(monitor);
-        if (boundary.is_cut(f))
-          parts[f] = boundary.cut(f);
-        else if (patch[f] == f)
-          parts[f] = boundary.whole(f);
-      }
-    });
-  }
-  for (std::size_t f = 0; f < faces.size(); ++f) parts[f] = parts[patch[f]];
-  std::array<RegionVolume, 2> found_volumes = {region_volume(vertices, faces, boundary, parts, 0),
-                                               region_volume(vertices, faces, boundary, parts, 1)};
+  const std::vector<Parts> parts = parts_of_faces(vertices, faces, boundary, monitor, threads);
+  std::array<RegionVolume, 2> found_volumes = {region_volume(vertices, faces, boundary, parts, overlapped),
+                                               region_volume(vertices, faces, boundary, parts, inverted)};
   const auto vague = [](const RegionVolume& region) { return region.uncertainty > 0.01 * region.volume; };
   if (std::any_of(found_volumes.begin(), found_volumes.end(), vague)) {
     const auto sampled = sampled_volumes(vertices, faces, tree, monitor, threads);
@@ -241,6 +256,29 @@ Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, con
         found_volumes[r] = sampled[r];
   }
   return {found_volumes[0], found_volumes[1]};
+}
+
+TriangleSheet body_boundary(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
+                            const SelfIntersections& found, Monitor& monitor, unsigned threads) {
+  const Boundary boundary(vertices, faces, tree, found);
+  const std::vector<Parts> parts = parts_of_faces(vertices, faces, boundary, monitor, threads);
+  TriangleSheet sheet{{vertices.begin(), vertices.end()}, {}};
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (!boundary.is_cut(f)) {
+      if (parts[f][inside] != 0) sheet.faces.push_back(faces[f]);
+      continue;
+    }
+    if (boundary.is_flat(f)) continue;
+    check_stop(monitor);
+    boundary.cut(f, [&](const Parts& here, const FacePiece& piece, const auto& lifted) {
+      if (here[inside] == 0) return;
+      const auto base = static_cast<std::uint32_t>(sheet.vertices.size());
+      for (const Vec2& corner : piece.corners) sheet.vertices.push_back(lifted(corner));
+      sheet.faces.push_back({base, base + 1, base + 2});
+      sheet.faces.push_back({base, base + 2, base + 3});
+    });
+  }
+  return sheet;
 }
 
 } // namespace cowgpu

@@ -6,6 +6,7 @@
 #include "host/plan/bvh.hpp"
 
 #include <span>
+#include <vector>
 
 namespace cowgpu {
 
@@ -36,5 +37,18 @@ struct Overlap {
 /// that of the faces, `pairs` all their intersections. The same on any number of threads. Throws Error(interrupted).
 Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
                 const SelfIntersections& pairs, Monitor& monitor, unsigned threads = 0);
+
+/// Triangles that lie on another surface and cover parts of it.
+struct TriangleSheet {
+  std::vector<Vec3> vertices;
+  std::vector<Face> faces;
+};
+
+/// What bounds the body, where the winding number is above 0: pieces of the surface with it on one side only. Faces that
+/// nothing cuts are whole, others cut as for overlap(), with corners rounded. Parts inside the body, as of shells that pass
+/// through each other, and outside of it, as of shells that look inwards, are left out. Expects and throws what overlap()
+/// does.
+TriangleSheet body_boundary(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
+                            const SelfIntersections& pairs, Monitor& monitor, unsigned threads = 0);
 
 } // namespace cowgpu
