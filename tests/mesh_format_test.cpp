@@ -53,6 +53,8 @@ TEST_CASE("formats are told by what files hold, whatever they are called", "[for
   CHECK(outcome_of([] { mesh_format_of("4 4 0\n", "x.txt"); }).fault == "file-format");
   CHECK(outcome_of([] { mesh_format_of("", "x"); }).fault == "file-truncated");
   CHECK(outcome_of([] { mesh_format_of("\x1f\x8b\x08", "x.obj"); }).says("Unpack it"));
+  CHECK(outcome_of([] { mesh_format_of("ISO-10303-21;\nHEADER;", "x.obj"); }).says("STEP"));
+  CHECK(outcome_of([] { mesh_format_of("# vtk DataFile Version 3.0\nv\nASCII\n", "x"); }).says("VTK"));
 }
 
 TEST_CASE("a name that says another format is noted", "[formats][readers]") {

@@ -4,6 +4,7 @@
 #include "host/cli/mend_options.hpp"
 #include "host/cli/quantities.hpp"
 #include "host/error.hpp"
+#include "host/mesh/winding_notes.hpp"
 #include "host/units.hpp"
 
 #include <fmt/format.h>
@@ -152,12 +153,17 @@ Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
   if (!options.length.empty()) placement.scale = metres_per_unit(options, mesh);
   place(mesh, placement);
   ClosedSurface surface = ClosedSurface::from(std::move(mesh));
-  notes.insert(notes.end(), surface.mesh().notes.begin(), surface.mesh().notes.end());
+  ConsoleMonitor monitor(ProgressStyle::none);
+  const auto add = [&](const std::vector<std::string>& more) { notes.insert(notes.end(), more.begin(), more.end()); };
+  add(surface.mesh().notes);
+  add(winding_notes(surface, monitor));
   std::vector<Part> parts;
   for (const std::string& text : options.parts) parts.push_back(load_part(text, placement, options.charge));
-  for (const Part& part : parts)
-    for (const std::string& note : part.surface.mesh().notes)
-      notes.push_back(fmt::format("{}: {}", part.surface.mesh().name, note));
+  for (const Part& part : parts) {
+    const RawMesh& own = part.surface.mesh();
+    for (const auto& some : {own.notes, winding_notes(part.surface, monitor)})
+      for (const std::string& note : some) notes.push_back(fmt::format("{}: {}", own.name, note));
+  }
   Body body = make_body(std::move(surface), origin, density, std::move(parts));
   body.placement = placement;
   return body;

@@ -3,7 +3,7 @@
 #include "host/cli/expand_flow.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
-#include "host/io/file.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/map_file.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/sha256.hpp"
@@ -51,7 +51,7 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
   if (choice.map_file.empty())
     result.map = make_map(method, paper, surface, monitor);
   else {
-    const std::string bytes = read_file(choice.map_file);
+    const std::string bytes = read_input_file(choice.map_file);
     result.map = read_map(bytes, choice.map_file, surface, method);
     if (!body.placement.rotation.isIdentity(0)) {
       for (Vec3& p : result.map.positions) p = body.placement.rotation * p;

@@ -371,7 +371,7 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
   const auto check_count = [&](std::size_t count) {
     MemoryNeed need = backend->potential_memory(count, s.lmax, Derivatives(options.derivatives));
     need.host += 64 * count + (options.output.empty() ? 0 : potential_file_bytes(count));
-    check_memory(need, *backend, "ask for fewer points or a lower --order");
+    check_memory(need, *backend, options.exact ? "ask for fewer points" : "ask for fewer points or a lower --order");
   };
   check_count(count_places(options.places));
   s.places = read_places(options.places, s.frame);

@@ -2,7 +2,7 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
-#include "host/io/file.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/result_json.hpp"
 #include "host/io/surface_file.hpp"
@@ -51,7 +51,7 @@ std::vector<SurfaceFile> read_surfaces(const std::string& path, const json& docu
 
 /// The text of a document of findings. It may be any JSON object that names its schema.
 std::string read_findings(const std::string& path) {
-  std::string text = read_file(path); // once: it may be a pipe
+  std::string text = read_input_file(path); // once: it may be a pipe
   const json document = result_json::parse(path, text);
   const json& schema = result_json::member(path, document, "schema");
   if (!schema.is_string() || schema.get<std::string>().rfind("cowgpu.", 0) != 0)

@@ -1,6 +1,6 @@
 #include "host/io/csv_table.hpp"
 
-#include "host/io/file.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
 
 #include <fmt/format.h>
@@ -89,7 +89,7 @@ int CsvTable::integer(const std::string& key, int smallest, int largest) const {
 }
 
 CsvTable read_csv(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_input_file(path);
   std::string_view text = bytes;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   CsvTable table;

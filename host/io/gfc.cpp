@@ -4,7 +4,7 @@
 #include "host/io/coefficient_formats.hpp"
 #include "host/io/coefficient_lines.hpp"
 #include "host/io/coefficient_metadata.hpp"
-#include "host/io/file.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/number.hpp"
 #include "host/io/shown.hpp"
 #include "host/version.hpp"
@@ -166,7 +166,7 @@ void fill(CoefficientSet& set, const std::vector<Row>& rows, int lmax, WordLines
 } // namespace
 
 CoefficientSet read_gfc(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_input_file(path);
   std::string_view text = bytes;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   WordLines lines(path.string(), text);

@@ -1,7 +1,7 @@
 #include "host/io/map_file.hpp"
 
 #include "host/error.hpp"
-#include "host/io/file.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/glb.hpp"
 #include "host/io/ply.hpp"
 #include "host/io/shown.hpp"
@@ -80,7 +80,7 @@ void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat f
 }
 
 SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface, const std::string& method) {
-  return read_map(read_file(path), path.string(), surface, method);
+  return read_map(read_input_file(path), path.string(), surface, method);
 }
 
 SphereMap read_map(std::string_view bytes, const std::string& name, const ManifoldSurface& surface,

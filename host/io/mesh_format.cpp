@@ -1,6 +1,7 @@
 #include "host/io/mesh_format.hpp"
 
 #include "host/error.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/gltf.hpp"
 #include "host/io/obj.hpp"
 #include "host/io/off.hpp"
@@ -65,6 +66,35 @@ const MeshFormat* by_content(std::string_view bytes, const MeshFormat* suffix) {
   return nullptr;
 }
 
+/// Formats of shapes that are not read, by their first bytes; "" for others.
+std::string_view other_format(std::string_view bytes) {
+  struct Other {
+    std::string_view begins, name;
+  };
+  constexpr Other others[] = {{"Kaydara FBX Binary", "FBX"},
+                              {"; FBX", "FBX"},
+                              {"BLENDER", "Blender"},
+                              {"ISO-10303-21", "STEP"},
+                              {"# vtk DataFile", "VTK"},
+                              {"#VRML", "VRML"},
+                              {"#X3D", "X3D"},
+                              {"PXR-USDC", "USD"},
+                              {"#usda", "USD"},
+                              {"MeshVersionFormatted", "INRIA's .mesh"},
+                              {"$MeshFormat", "Gmsh"}};
+  const std::string_view text = without_byte_order_mark(bytes);
+  for (const Other& other : others)
+    if (text.starts_with(other.begins)) return other.name;
+  if (WordScanner(text, '\0').word().starts_with('<')) {
+    constexpr Other elements[] = {{"<COLLADA", "COLLADA"}, {"<X3D", "X3D"}, {"<VTKFile", "VTK"},
+                                  {"<amf", "AMF"},         {"<svg", "SVG"}, {"<kml", "KML"}};
+    const std::string_view head = text.substr(0, 4096);
+    for (const Other& element : elements)
+      if (head.find(element.begins) != std::string_view::npos) return element.name;
+  }
+  return {};
+}
+
 } // namespace
 
 std::span<const MeshFormat> mesh_formats() {
@@ -72,20 +102,19 @@ std::span<const MeshFormat> mesh_formats() {
 }
 
 const MeshFormat& mesh_format_of(std::string_view bytes, const std::string& name) {
+  refuse_foreign_file(bytes, name);
   const MeshFormat* suffix = by_suffix(name);
-  if (const MeshFormat* format = by_content(bytes, suffix)) return *format;
   const auto refuse = [&](Fault fault, const std::string& sentence) {
     throw Error(fault, fmt::format("{}:1: {}", name, sentence));
   };
-  if (bytes.starts_with("\x1f\x8b") || bytes.starts_with("PK\x03\x04") || bytes.starts_with("BZh") ||
-      bytes.starts_with("\xfd"
-                        "7zXZ"))
-    refuse(Fault::file_format, "this is a compressed file. Unpack it first.");
-  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
-    refuse(Fault::file_format, "the file is UTF-16 text. Save it as UTF-8 or ASCII.");
-  if (suffix) return *suffix; // its reader says what is wrong
   std::string names;
   for (const MeshFormat& format : formats) names += fmt::format("{}{}", names.empty() ? "" : ", ", format.name);
+  if (const std::string_view other = other_format(bytes); !other.empty())
+    refuse(Fault::file_format,
+           fmt::format("this is a file of {}, which is not read. Read are {}; export the mesh as one of these.", other,
+                       names));
+  if (const MeshFormat* format = by_content(bytes, suffix)) return *format;
+  if (suffix) return *suffix; // its reader says what is wrong
   if (bytes.empty()) refuse(Fault::file_truncated, "the file is empty. Fetch or export it again.");
   const std::string_view word = WordScanner(without_byte_order_mark(bytes)).word();
   refuse(Fault::file_format,

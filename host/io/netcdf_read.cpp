@@ -1,5 +1,5 @@
 #include "host/error.hpp"
-#include "host/io/file.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/netcdf.hpp"
 #include "host/io/shown.hpp"
 
@@ -323,7 +323,7 @@ void sort_fields(std::vector<const NetcdfVariable*>& variables) {
 }
 
 NetcdfFile read_netcdf(const std::filesystem::path& path) {
-  std::string bytes = read_file(path);
+  std::string bytes = read_input_file(path);
   if (!bytes.starts_with("\x89HDF\r\n\x1a\n") && !bytes.starts_with("CDF\x01") && !bytes.starts_with("CDF\x02") &&
       !bytes.starts_with("CDF\x05"))
     throw Error(Fault::file_format,

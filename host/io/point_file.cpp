@@ -1,7 +1,7 @@
 #include "host/io/point_file.hpp"
 
 #include "host/error.hpp"
-#include "host/io/file.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
 
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ std::optional<double> number_of(std::string_view word) {
 } // namespace
 
 std::vector<Vec3> read_points(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path == "-" ? "/dev/stdin" : path);
+  const std::string bytes = read_input_file(path == "-" ? "/dev/stdin" : path);
   const std::string name = path == "-" ? "standard input" : path.string();
   std::string_view text = bytes;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);

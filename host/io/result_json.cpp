@@ -1,7 +1,7 @@
 #include "host/io/result_json.hpp"
 
 #include "host/error.hpp"
-#include "host/io/file.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
 
 #include <Eigen/LU>
@@ -45,7 +45,7 @@ void check_brackets(const std::string& name, const std::string& bytes) {
 } // namespace
 
 json parse(const std::filesystem::path& path) {
-  return parse(path.string(), read_file(path));
+  return parse(path.string(), read_input_file(path));
 }
 
 json parse(const std::string& name, const std::string& bytes) {

@@ -78,10 +78,15 @@ Body make_body(ClosedSurface surface, const OriginChoice& origin, double density
   const double size = radius_about(body.box.middle());
   if (!(body.brillouin_radius <= 1e6 * size))
     throw Error(Fault::bad_argument,
-                fmt::format("the origin ({}, {}, {}) is {:.1e} body radii away; moments about it would be nothing but "
-                            "rounding: choose one within 1e6 radii{}",
-                            body.origin.x(), body.origin.y(), body.origin.z(), body.brillouin_radius / size,
-                            origin.point ? ", or the centre of mass" : " with --origin"));
+                fmt::format("the {} ({}, {}, {}) is {:.1e} body radii away; moments about it would be nothing but "
+                            "rounding: {}",
+                            origin.point ? "origin" : "centre of mass", body.origin.x(), body.origin.y(),
+                            body.origin.z(), body.brillouin_radius / size,
+                            origin.point
+                                ? "choose one within 1e6 radii, or the centre of mass (--origin com)"
+                                : "the volumes of shells or masses of parts nearly cancel. See by `cowgpu "
+                                  "inspect` which way its shells look, or choose an origin within 1e6 radii by "
+                                  "--origin X,Y,Z"));
   return body;
 }
 

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/mesh/geometry.hpp"
+#include "host/mesh/mend_hint.hpp"
 #include "host/mesh/topology.hpp"
 
 #include <fmt/core.h>
@@ -47,10 +48,12 @@ std::string shown(const RawMesh& mesh, const EdgeUse& use) {
 
 void require_some(const RawMesh& mesh) {
   if (!mesh.vertices.empty() && !mesh.faces.empty()) return;
+  std::string notes; // of the reader: perhaps all faces were left out
+  for (const std::string& note : mesh.notes) notes += fmt::format(" ({})", note);
   fail(Fault::mesh_empty, mesh,
        fmt::format(
-           "the mesh has {} vertices and {} faces; there is nothing to compute. Export the surface with its faces.",
-           mesh.vertices.size(), mesh.faces.size()));
+           "the mesh has {} vertices and {} faces; there is nothing to compute. Export the surface with its faces.{}",
+           mesh.vertices.size(), mesh.faces.size(), notes));
 }
 
 void require_finite(const RawMesh& mesh) {
@@ -77,6 +80,11 @@ void require_range(const RawMesh& mesh) {
            largest, extent, largest_coordinate, smallest_extent));
 }
 
+std::string about_repeated(const RawMesh& mesh) {
+  const std::string faces = repeated_faces(mesh);
+  return faces.empty() ? "" : fmt::format(" There are duplicate faces, of the same corners: {}. Remove them.", faces);
+}
+
 void require_balance(const RawMesh& mesh) {
   Offenders open, unbalanced;
   for_each_edge(edge_uses(mesh.faces, mesh.vertices.size()), [&](std::span<const EdgeUse> edge) {
@@ -101,7 +109,7 @@ void require_balance(const RawMesh& mesh) {
     if (unbalanced.any())
       sentence += fmt::format(" Besides, {} run more often in one direction than back.",
                               unbalanced.number("edge is", "edges are"));
-    fail(Fault::mesh_open, mesh, sentence);
+    fail(Fault::mesh_open, mesh, sentence + about_repeated(mesh) + mend_hint(mesh));
   }
   if (unbalanced.any())
     fail(Fault::mesh_unbalanced, mesh,
@@ -109,7 +117,8 @@ void require_balance(const RawMesh& mesh) {
              "{} run more often in one direction than back: {}. Orient the faces consistently: neighbours run "
              "their common edge in opposite directions; look for flipped, doubled or missing faces (vertices and "
              "faces count from 0).",
-             unbalanced.number("edge is", "edges are"), unbalanced.list()));
+             unbalanced.number("edge is", "edges are"), unbalanced.list()) +
+             about_repeated(mesh) + mend_hint(mesh));
 }
 
 void require_volume(const RawMesh& mesh) {
@@ -120,11 +129,13 @@ void require_volume(const RawMesh& mesh) {
          fmt::format(
              "the volume is {}: all faces look inwards, or more of them than outwards. Flip them (reverse the order "
              "of each face's corners), so that they run counter-clockwise seen from outside.",
-             size));
+             size) +
+             mend_hint(mesh));
   fail(Fault::mesh_no_volume, mesh,
        fmt::format("the volume, {}, cannot be told from zero: rounding the coordinates alone can change it by {}. The "
                    "surface is flat, or its shells cancel; give it thickness.",
-                   size, noise));
+                   size, noise) +
+           mend_hint(mesh));
 }
 
 void require_two_faces_per_edge(const RawMesh& mesh, std::span<const EdgeUse> uses) {

@@ -1,6 +1,8 @@
 #include "host/mesh/placement.hpp"
 
 #include "host/error.hpp"
+#include "host/mesh/closed_surface.hpp"
+#include "host/mesh/weld.hpp"
 
 #include <fmt/format.h>
 
@@ -10,6 +12,7 @@ namespace cowgpu {
 
 void place(RawMesh& mesh, const Placement& placement) {
   if (placement.scale != 1) {
+    if (!seems_balanced(mesh.faces)) ClosedSurface::from(mesh); // which refuses it with lengths in the file's unit
     for (Vec3& v : mesh.vertices) v *= placement.scale;
     mesh.notes.push_back(fmt::format("lengths are metres: coordinates times {}", placement.scale));
   }
