@@ -137,7 +137,7 @@ TEST_CASE("without a cut-off nothing but underflow is left out", "[moments][cut-
   paths.compare(problem, 1e-14);
 }
 
-// 1e-17 of a bound that compare() lets be up to a thousand times the norm.
+// 1e-17 of a bound that compare_by_bound() lets be up to a thousand times the norm.
 TEST_CASE("the default cut-off is below rounding", "[moments][cut-off]") {
   Paths paths;
   for (const RawMesh& mesh : {two_shells(), icosphere(3)}) {

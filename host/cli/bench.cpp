@@ -70,7 +70,8 @@ void run(const Options& options, Common& common) {
       const Accuracy accuracy = verify_moments(problem, *path.backend, Verify::sample, 1, monitor);
       if (!accuracy.passed())
         throw Error(Fault::check_failed,
-                    fmt::format("{} is off by {:.1e}: nothing was timed", path.name, accuracy.worst()->errors.weighed));
+                    fmt::format("{} is off by {:.1e} times what rounding explains: nothing was timed", path.name,
+                                accuracy.worst()->errors.ratio));
     }
     for (int i = 0; i < options.runs; ++i)
       for (Path& path : paths) {

@@ -10,8 +10,11 @@
 #include "host/plan/moments.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
+#include "host/spectrum/translate.hpp"
 
 #include <fmt/format.h>
+
+#include <future>
 
 namespace cowgpu::cli {
 namespace {
@@ -96,7 +99,7 @@ MemoryNeed memory_need(const Options& options, const ExpansionChoice& choice, st
   for (const MomentProblem& problem : problems) { // one after the other, beside the sum of those before
     const MemoryNeed one = backend.moments_memory(problem);
     const std::uint64_t before = &problem == problems.data() ? 0 : result;
-    const std::uint64_t check = result + verify_bytes(problem, backend, parse_verify(options.verify));
+    const std::uint64_t check = result + one.host + verify_bytes(problem, parse_verify(options.verify));
     need.host = std::max({need.host, one.host + before, check});
     need.device = std::max(need.device, one.device);
   }
@@ -150,10 +153,19 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
   std::vector<SurfaceResult> surfaces = expand_surfaces(choice, options.aliasing, body, *backend, monitor);
   timings.surfaces = watch.lap();
   if (choice.mass) {
-    mass = mass_moments(problems, *backend, monitor, &run);
+    std::vector<std::vector<double>> norms;
+    mass = mass_moments(problems, *backend, monitor, &run, &norms);
+    for (const MomentProblem& problem : problems)
+      if (near_problem(problem)) {
+        notes.push_back(
+            "the origin is more than 16 radii away from the body or a part of it, whose moments are computed "
+            "about the middle of its box and moved to the origin");
+        break;
+      }
     timings.moments = watch.lap();
-    accuracy = verify_all(problems, *backend, parse_verify(options.verify), options.seed, monitor);
-    if (accuracy.how != Verify::none) accuracy.agreements.push_back(compare_with_tensors(body, mass));
+    accuracy = verify_all(problems, mass, norms, *backend, parse_verify(options.verify), options.seed, monitor);
+    if (accuracy.how != Verify::none)
+      accuracy.agreements.push_back(compare_with_tensors(body, mass, accuracy.estimate.error));
     timings.verify = watch.lap();
   }
   const Tensors second = tensors(body);
@@ -179,13 +191,15 @@ void run(const Options& options, Common& common) {
     for (const std::string& path : options.outputs) files.push_back(std::make_unique<AtomicFile>(path));
 
   std::vector<std::string> notes;
+  std::string note;
+  // While the device opens, which mostly waits for its driver.
+  auto opening = std::async(std::launch::async, [&] { return open_backend(common, &note); });
   Body body = load_body(options.body, notes);
   if (!body.parts.empty() && !choice.maps.empty())
     notes.push_back("the surface that is mapped and expanded is MESH's alone: parts have mass only");
   Timings timings;
   timings.load = watch.lap();
-  std::string note;
-  auto backend = open_backend(common, &note);
+  auto backend = opening.get();
   timings.device = watch.lap();
   if (!note.empty()) {
     if (!common.quiet) say(fmt::format("cowgpu: {}\n", note));
@@ -221,9 +235,10 @@ void run(const Options& options, Common& common) {
     const Agreement& worst = *result.accuracy.worst();
     throw Error(
         Fault::check_failed,
-        fmt::format("{} against {} is off by {:.1e}, more than {:.1e}: do not trust these numbers; try --device cpu "
-                    "and `cowgpu validate`",
-                    worst.path, worst.against, worst.errors.weighed, result.accuracy.bound));
+        fmt::format(
+            "{} against {} is off by {:.1e} times what rounding explains (degree {}; {:.0f} are allowed): do not "
+            "trust these numbers; try --device cpu and `cowgpu validate`",
+            worst.path, worst.against, worst.errors.ratio, worst.errors.degree, Accuracy::bound));
   }
 }
 
@@ -294,8 +309,10 @@ void add_expand(CLI::App& app, Common& common) {
       ->check(CLI::Range(0.0, 1e-3))
       ->capture_default_str();
   command
-      ->add_option("--verify", options->verify,
-                   "Compute again on a second path: sample (256 triangles), full (all), none")
+      ->add_option(
+          "--verify", options->verify,
+          "Compute again by a second recursion, and estimate the error of each degree: sample (128 triangles), full "
+          "(all), none")
       ->check(CLI::IsMember({"sample", "full", "none"}))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the sample")->capture_default_str();

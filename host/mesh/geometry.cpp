@@ -1,5 +1,7 @@
 #include "host/mesh/geometry.hpp"
 
+#include "host/determinant.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -27,7 +29,6 @@ private:
 
 struct Triangle {
   Wide3 a, b, c;
-  Real determinant() const { return a.dot(b.cross(c)); }
   Real area() const { return (b - a).cross(c - a).norm() / 2; }
 };
 
@@ -54,10 +55,7 @@ Box bounding_box(std::span<const Vec3> vertices, std::span<const Face> faces) {
 }
 
 double volume(std::span<const Vec3> vertices, std::span<const Face> faces) {
-  Sum sum;
-  for_each_triangle(vertices, faces, bounding_box(vertices, faces).middle(),
-                    [&](const Triangle& t) { sum.add(t.determinant()); });
-  return static_cast<double>(sum.value() / 6);
+  return static_cast<double>(sum_of_determinants(vertices, faces, bounding_box(vertices, faces).middle()) / 6);
 }
 
 double area(std::span<const Vec3> vertices, std::span<const Face> faces) {
@@ -68,14 +66,29 @@ double area(std::span<const Vec3> vertices, std::span<const Face> faces) {
 
 Vec3 centre_of_mass(std::span<const Vec3> vertices, std::span<const Face> faces) {
   const Vec3 middle = bounding_box(vertices, faces).middle();
-  Sum mass, moment[3];
-  for_each_triangle(vertices, faces, middle, [&](const Triangle& t) {
-    const Real weight = t.determinant();
-    mass.add(weight);
-    for (int i = 0; i < 3; ++i) moment[i].add(weight * (t.a[i] + t.b[i] + t.c[i]));
-  });
+  Sum moment[3];
+  Real sizes = 0;
+  for (const Face& face : faces) {
+    const Vec3 &a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
+    const Real weight = determinant(a, b, c, middle);
+    sizes += std::fabs(weight);
+    for (int i = 0; i < 3; ++i)
+      moment[i].add(weight * ((Real(a[i]) - middle[i]) + (Real(b[i]) - middle[i]) + (Real(c[i]) - middle[i])));
+  }
+  const Real mass = sum_of_determinants(vertices, faces, middle);
+  Real first[3] = {moment[0].value(), moment[1].value(), moment[2].value()};
+  if (std::fabs(mass) < Real{0x1p-6L} * sizes) { // the sums cancel, and with them what is left
+    Quad exact[3] = {0, 0, 0};
+    for (const Face& face : faces) {
+      const Vec3 &a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
+      const Quad weight = determinant_in<Quad>(a, b, c, middle);
+      for (int i = 0; i < 3; ++i)
+        exact[i] += weight * ((Quad(a[i]) - middle[i]) + (Quad(b[i]) - middle[i]) + (Quad(c[i]) - middle[i]));
+    }
+    for (int i = 0; i < 3; ++i) first[i] = static_cast<Real>(exact[i]);
+  }
   Vec3 centre;
-  for (int i = 0; i < 3; ++i) centre[i] = static_cast<double>(middle[i] + moment[i].value() / (4 * mass.value()));
+  for (int i = 0; i < 3; ++i) centre[i] = static_cast<double>(middle[i] + first[i] / (4 * mass));
   return centre;
 }
 
@@ -99,12 +112,13 @@ std::vector<ShellSize> shell_sizes(std::span<const Vec3> vertices, std::span<con
     Sum determinant, area;
   };
   std::vector<Sums> sums(count);
+  const Vec3 middle = bounding_box(vertices, faces).middle();
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const Face& face = faces[f];
+    sums[shell[f]].determinant.add(determinant(vertices[face[0]], vertices[face[1]], vertices[face[2]], middle));
+  }
   std::size_t face = 0;
-  for_each_triangle(vertices, faces, bounding_box(vertices, faces).middle(), [&](const Triangle& t) {
-    Sums& own = sums[shell[face++]];
-    own.determinant.add(t.determinant());
-    own.area.add(t.area());
-  });
+  for_each_triangle(vertices, faces, middle, [&](const Triangle& t) { sums[shell[face++]].area.add(t.area()); });
   std::vector<ShellSize> sizes;
   sizes.reserve(count);
   for (const Sums& s : sums)

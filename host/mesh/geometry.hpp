@@ -1,9 +1,9 @@
 // Size, place and shape of a body bounded by triangles: sums of signed tetrahedra.
 //
 // Lengths are in the mesh's own unit, areas in its square, volumes in its cube. All sums run in extended precision
-// (compensated long double, 64-bit significand on x86) relative to the middle of the bounding box, and are rounded
-// once: a body far from the origin loses nothing, and a result is off by less than an ulp unless its terms cancel by
-// more than 2^8. The order of the faces is the order of summation: results repeat bit for bit.
+// (long double, and Quad where they cancel: host/determinant.hpp) relative to the middle of the bounding box, and are
+// rounded once: bodies that are thin, hollow or far from the origin lose nothing. The order of the faces is the order of
+// summation: results repeat bit for bit.
 //
 // The functions on spans take any valid indices and say what they mean for surfaces that are not closed; with
 // coordinates that are not finite the result is NaN.

@@ -18,7 +18,7 @@ struct Tensors {
 
 /// Exact up to rounding: the integral of x_i x_j over the tetrahedron (0, A, B, C) is det(A, B, C)/120 times
 /// (S_i S_j + A_i A_j + B_i B_j + C_i C_j), S = A + B + C (Tonon 2004, "Explicit exact formulas for the 3-D tetrahedron
-/// inertia tensor"). Summed in long double.
+/// inertia tensor"). Summed about the middle of each surface's box and moved by Steiner's parallel-axis theorem.
 Tensors tensors(const Body& body);
 
 /// A tensor of three indices, [i](j, k).

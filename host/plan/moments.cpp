@@ -1,9 +1,9 @@
 #include "host/plan/moments.hpp"
 
+#include "host/determinant.hpp"
 #include "host/error.hpp"
 #include "host/plan/pairing.hpp"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,10 +29,6 @@ ExtendedVec3 reduced(const MomentProblem& problem, std::uint32_t vertex) {
   return x / Extended(problem.reference_radius);
 }
 
-Extended det(const ExtendedVec3& a, const ExtendedVec3& b, const ExtendedVec3& c) {
-  return a.dot((b - a).cross(c - a));
-}
-
 struct Triangle {
   double weight = 0; // |det|/2
   double radius = 0;
@@ -41,24 +37,40 @@ struct Triangle {
 Triangle measure(const MomentProblem& problem, const Face& face, Extended& determinant) {
   const std::array<ExtendedVec3, 3> x = {reduced(problem, face[0]), reduced(problem, face[1]),
                                          reduced(problem, face[2])};
-  determinant = det(x[0], x[1], x[2]);
+  const Extended r = problem.reference_radius;
+  determinant = cowgpu::determinant(problem.vertices[face[0]], problem.vertices[face[1]], problem.vertices[face[2]],
+                                    problem.origin) /
+                r / r / r;
   const Extended largest = std::max({x[0].squaredNorm(), x[1].squaredNorm(), x[2].squaredNorm()});
   return {double(std::abs(determinant) / 2), double(std::sqrt(largest))};
 }
 
-// sum |det|/2 r^l for every degree. A triangle is dropped from the list once it cannot change the sum any more, which
-// also keeps its power from becoming denormal.
-std::vector<double> radial_sums(std::vector<Triangle> triangles, int lmax) {
-  std::vector<double> sums(std::size_t(lmax) + 1);
+// Calls to(l, triangles) with the terms |det|/2 r^l as weights, and their sum, for every degree. A triangle is dropped
+// from the list once it cannot change the sum any more, which also keeps its power from becoming denormal.
+template <class To>
+void for_each_degree(std::vector<Triangle> triangles, int lmax, const To& to) {
   for (int l = 0; l <= lmax; ++l) {
     double sum = 0;
     for (const Triangle& t : triangles) sum += t.weight;
-    sums[std::size_t(l)] = sum;
+    to(triangles, sum);
     for (Triangle& t : triangles) t.weight *= t.radius;
     if (l % 16 == 0)
       std::erase_if(triangles, [&](const Triangle& t) { return t.weight < 1e-40 * sum / double(triangles.size()); });
   }
+}
+
+std::vector<double> radial_sums(std::vector<Triangle> triangles, int lmax) {
+  std::vector<double> sums;
+  for_each_degree(std::move(triangles), lmax, [&](const std::vector<Triangle>&, double sum) { sums.push_back(sum); });
   return sums;
+}
+
+std::vector<Triangle> measure_all(const MomentProblem& problem) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(problem.faces.size());
+  Extended unused = 0;
+  for (const Face& face : problem.faces) triangles.push_back(measure(problem, face, unused));
+  return triangles;
 }
 
 // The last degree at which each group has to be kept: at every degree the smallest terms |det|/2 r^l are left out while
@@ -86,6 +98,14 @@ std::vector<int> last_degrees(std::vector<Triangle> groups, const std::vector<do
     }
   }
   return last;
+}
+
+// |density| R^3 sqrt((2l+1)/4pi)/(l+3) times sums over |det|/2 r^l.
+std::vector<double> in_units_of_moments(std::vector<double> sums, const MomentProblem& problem) {
+  const double unit = std::abs(problem.density) * std::pow(problem.reference_radius, 3);
+  for (std::size_t l = 0; l < sums.size(); ++l)
+    sums[l] *= unit * std::sqrt((2 * double(l) + 1) / (4 * std::numbers::pi)) / (double(l) + 3);
+  return sums;
 }
 
 TrianglePair make_pair(const MomentProblem& problem, std::uint32_t first, std::uint32_t second, Extended& dets,
@@ -151,6 +171,13 @@ Moments moments(const MomentProblem& problem, int lanes) {
   const auto matched = pair_faces(problem.faces, problem.vertices.size());
   found.reserve(matched.size());
   for (const auto& [f, g] : matched) found.push_back(make_pair(problem, f, g, dets, triangles));
+  // The mass is the one moment that is as good as the input, whatever cancels.
+  Extended sizes = 0;
+  for (const Triangle& t : triangles) sizes += 2 * t.weight;
+  if (std::abs(dets) < 0x1p-6L * sizes) {
+    const Extended r = problem.reference_radius;
+    dets = sum_of_determinants(problem.vertices, problem.faces, problem.origin) / r / r / r;
+  }
   plan.sum_of_dets = double(dets);
   plan.pair_count = found.size();
 
@@ -263,15 +290,27 @@ Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span
 }
 
 std::vector<double> degree_bound(const MomentProblem& problem) {
-  std::vector<Triangle> triangles;
-  triangles.reserve(problem.faces.size());
-  Extended unused = 0;
-  for (const Face& face : problem.faces) triangles.push_back(measure(problem, face, unused));
-  std::vector<double> bound = radial_sums(std::move(triangles), problem.lmax);
-  const double unit = std::abs(problem.density) * std::pow(problem.reference_radius, 3);
-  for (std::size_t l = 0; l < bound.size(); ++l)
-    bound[l] *= unit * std::sqrt((2 * double(l) + 1) / (4 * std::numbers::pi)) / (double(l) + 3);
-  return bound;
+  return in_units_of_moments(radial_sums(measure_all(problem), problem.lmax), problem);
+}
+
+DegreeSums degree_sums(const MomentProblem& problem) {
+  DegreeSums sums;
+  const double cut_off = std::max(problem.cut_off, smallest_cut_off);
+  for_each_degree(measure_all(problem), problem.lmax, [&](const std::vector<Triangle>& triangles, double sum) {
+    double squares = 0, small = 0;
+    const double allowed = cut_off * sum;
+    for (const Triangle& t : triangles) {
+      squares += t.weight * t.weight;
+      small += t.weight <= allowed ? t.weight : 0;
+    }
+    sums.bound.push_back(sum);
+    sums.root.push_back(std::sqrt(squares));
+    sums.left_out.push_back(std::min(small, allowed));
+  });
+  sums.bound = in_units_of_moments(std::move(sums.bound), problem);
+  sums.root = in_units_of_moments(std::move(sums.root), problem);
+  sums.left_out = in_units_of_moments(std::move(sums.left_out), problem);
+  return sums;
 }
 
 } // namespace cowgpu::plan

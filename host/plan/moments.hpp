@@ -22,6 +22,10 @@
 // degree's bound stays normal. Below that, rows of vertices near the z axis pass through denormals, which the paths count
 // as zero (host/flush_denormals.hpp).
 //
+// Determinants. Both paths take det from host/determinant.hpp, which computes it again in more bits where it cancels: of
+// thin bodies it would else be the largest error. The vertices a, b, c less the origin, over R, are rounded to doubles;
+// that moves t_l by some l units in its last place, as the recursion itself does.
+//
 // Cut-off. On the triangle's tetrahedron |S_lm| <= r^l sqrt((2l+1)/4pi), r its largest vertex radius, and by homogeneity
 // the integral of (|x|/r)^l over it is at most 3/(l+3) of its volume |det|/6. So a set D of triangles adds at most
 // sqrt((2l+1)/4pi)/(l+3) sum_D |det|/2 r^l to any Q_lm. Per degree the smallest groups are left out while their sum stays
@@ -47,11 +51,11 @@ struct TrianglePair {
 struct Moments {
   int lmax = 0;
   int lanes = 1;
-  int column_scale = 1;            ///< s above: 1 up to degree 1500, 2 beyond
+  int column_scale = 1;            ///< s above: 1 up to degree 1024, 2 beyond
   int start_exponent = 0;          ///< rows start at 2^start_exponent
   std::vector<TrianglePair> pairs; ///< by decreasing radius; padded with empty pairs to a multiple of lanes
   std::vector<int> last_degree;    ///< of each group: its rows stop there; non-negative, <= lmax
-  double sum_of_dets = 0;          ///< over all triangles, correctly rounded in extended precision
+  double sum_of_dets = 0;          ///< over all triangles, as sum_of_determinants() has it
   std::uint64_t pair_count = 0;    ///< without the padding
   double elements = 0;             ///< sum over pairs of (L+1)(L+2)/2, L the group's last degree
   double full_elements = 0;        ///< the same with L = lmax
@@ -81,7 +85,19 @@ std::uint64_t bytes(const MomentProblem& problem);
 Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums);
 
 /// B_l = |density| R^3 sqrt((2l+1)/4pi)/(l+3) sum |det|/2 r^l for l = 0 ... lmax, in the units of Q_lm / R^l, r and det
-/// taken after division by R: an a-priori bound of |Q_lm / R^l|.
+/// taken after division by R: an a-priori bound of |Q_lm / R^l|, and of the norm of degree l over all orders.
 std::vector<double> degree_bound(const MomentProblem& problem);
+
+/// Of each degree, in the same units.
+struct DegreeSums {
+  std::vector<double> bound; ///< B_l
+  std::vector<double> root;  ///< the triangles' terms of B_l added as the root of the sum of their squares
+  std::vector<double>
+      left_out; ///< bound of what problem.cut_off leaves out of the norm of the degree, at most cut_off B_l
+};
+
+/// Triangles are left out by groups that add up to at most cut_off B_l, so that each of them has no more; left_out adds the
+/// terms of all such triangles. Of few large triangles it is 0.
+DegreeSums degree_sums(const MomentProblem& problem);
 
 } // namespace cowgpu::plan

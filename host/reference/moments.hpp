@@ -2,14 +2,21 @@
 #pragma once
 
 #include "host/backend.hpp"
+#include "host/determinant.hpp"
 #include "host/parallel.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 namespace cowgpu::reference {
+
+/// What determinants are taken in: all else would lose in proportion to their cancellation.
+template <class Real>
+using Wider = std::conditional_t<std::is_floating_point_v<Real>, Quad, Real>;
 
 template <class Real>
 struct ComplexOf {
@@ -62,6 +69,25 @@ void raise(const std::array<Real, 3>& d, int l, const GradientFactors<Real>& f, 
   }
 }
 
+/// The last degree of each triangle, given |det| and r: from the next one on faces * |det|/2 r^l is at most tolerance times
+/// the sum over all triangles. -1 where that holds from degree 0 on.
+inline std::vector<int> last_degrees(std::vector<double> sizes, std::span<const double> radii, int lmax,
+                                     double tolerance) {
+  std::vector<int> last(sizes.size(), lmax);
+  std::vector<char> left_out(sizes.size(), 0);
+  for (int l = 0; l <= lmax; ++l) {
+    double sum = 0;
+    for (const double s : sizes) sum += s;
+    for (std::size_t t = 0; t < sizes.size(); ++t) {
+      const bool negligible = double(sizes.size()) * sizes[t] <= tolerance * sum;
+      if (negligible != bool(left_out[t])) last[t] = negligible ? l - 1 : lmax;
+      left_out[t] = negligible;
+      sizes[t] *= radii[t];
+    }
+  }
+  return last;
+}
+
 /// Q_lm / R^l of `problem` in `Real`, real and imaginary parts interleaved in the order of Coefficients: the chained
 /// recursion of host/plan/moments.hpp in orthonormal harmonics, one triangle at a time, no pairing, no scaling.
 /// `tolerance` > 0 leaves out a triangle from the degree on at which faces * |det|/2 r^l is at most tolerance times the
@@ -93,29 +119,17 @@ std::vector<Real> moments(const MomentProblem& problem, double tolerance = 0, co
       }
       if (square > largest) largest = square;
     }
-    std::array<Real, 3> u, v; // edges from the first corner: det(A, B, C) = A . (B-A) x (C-A)
-    for (std::size_t c = 0; c < 3; ++c) {
-      u[c] = x[1][c] - x[0][c];
-      v[c] = x[2][c] - x[0][c];
-    }
-    triangles[t].det = x[0][0] * (u[1] * v[2] - u[2] * v[1]) + x[0][1] * (u[2] * v[0] - u[0] * v[2]) +
-                       x[0][2] * (u[0] * v[1] - u[1] * v[0]);
+    const Face& face = problem.faces[t];
+    triangles[t].det = Real(determinant_in<Wider<Real>>(problem.vertices[face[0]], problem.vertices[face[1]],
+                                                        problem.vertices[face[2]], problem.origin)) /
+                       radius / radius / radius;
     sizes[t] = std::abs(double(triangles[t].det));
     radii[t] = double(sqrt(largest));
     triangles[t].last = problem.lmax;
   }
   if (tolerance > 0) {
-    std::vector<char> left_out(faces, 0);
-    for (std::size_t l = 0; l < degrees; ++l) {
-      double sum = 0;
-      for (const double s : sizes) sum += s;
-      for (std::size_t t = 0; t < faces; ++t) {
-        const bool negligible = double(faces) * sizes[t] <= tolerance * sum;
-        if (negligible != bool(left_out[t])) triangles[t].last = negligible ? int(l) - 1 : problem.lmax;
-        left_out[t] = negligible;
-        sizes[t] *= radii[t];
-      }
-    }
+    const std::vector<int> last = last_degrees(std::move(sizes), radii, problem.lmax, tolerance);
+    for (std::size_t t = 0; t < faces; ++t) triangles[t].last = last[t];
   }
   std::vector<std::size_t> order(faces); // those that reach furthest together, so that blocks end together
   for (std::size_t t = 0; t < faces; ++t) order[t] = t;
@@ -172,6 +186,10 @@ std::vector<Real> moments(const MomentProblem& problem, double tolerance = 0, co
     parallel_for(0, round, [&](std::size_t k, unsigned) { run_task(first + k, partial[k]); });
     for (std::size_t k = 0; k < round; ++k)
       for (std::size_t i = 0; i < result.size(); ++i) result[i] += unit * partial[k][i];
+  }
+  if constexpr (std::is_floating_point_v<Real>) { // the mass is as good as the input, whatever cancels
+    const auto dets = Real(sum_of_determinants(problem.vertices, problem.faces, problem.origin));
+    result[0] = Real(problem.density) * dets / (6 * sqrt(4 * acos(Real(-1))));
   }
   return result;
 }

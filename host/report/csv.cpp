@@ -31,6 +31,9 @@ std::string mass_comments(const ExpandResult& result) {
   text += "\n# second_moment ";
   append_number(text, result.tensors.second_moment.trace());
   text += "\n";
+  const ErrorEstimate& estimate = result.accuracy.estimate;
+  for (const std::string& sentence : sentences(estimate)) text += "# accuracy: " + sentence + "\n";
+  if (!estimate.error.empty()) text += fmt::format("# error_estimate {:.3e}\n", fmt::join(estimate.error, ","));
   for (const Part& part : result.body.parts) {
     text += fmt::format("# part {}, sha256 {}: adds the density ", one_line(part.surface.mesh().name),
                         part.surface.mesh().sha256);

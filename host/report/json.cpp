@@ -68,9 +68,9 @@ ordered_json json_of(const Accuracy& accuracy) {
   for (const Agreement& a : accuracy.agreements)
     agreements.push_back({{"path", a.path},
                           {"against", a.against},
-                          {"worst", a.errors.worst},
-                          {"worst_degree", a.errors.worst_degree},
-                          {"weighed", a.errors.weighed}});
+                          {"worst", a.errors.relative()},
+                          {"worst_degree", a.errors.degree},
+                          {"weighed", a.errors.ratio}});
   ordered_json json = {{"verify", how[std::size_t(accuracy.how)]},
                        {"triangles", accuracy.triangles},
                        {"seed", accuracy.seed},
@@ -79,9 +79,20 @@ ordered_json json_of(const Accuracy& accuracy) {
                        {"passed", nullptr},
                        {"agreements", agreements}};
   if (const Agreement* worst = accuracy.worst()) { // an unchecked result must not look like a checked one
-    json["bound"] = accuracy.bound;
-    json["worst"] = worst->errors.weighed;
+    json["bound"] = Accuracy::bound;
+    json["worst"] = worst->errors.ratio;
     json["passed"] = accuracy.passed();
+    const WorstDegree known = worst_known_degree(accuracy.estimate);
+    json["estimate"] = {{"sentences", sentences(accuracy.estimate)},
+                        {"relative", nullptr},
+                        {"worst_degree", nullptr},
+                        {"error", accuracy.estimate.error},
+                        {"norm", accuracy.estimate.norm},
+                        {"bound", accuracy.estimate.bound}};
+    if (known.degree >= 0) {
+      json["estimate"]["relative"] = known.relative;
+      json["estimate"]["worst_degree"] = known.degree;
+    }
   }
   return json;
 }
@@ -128,7 +139,7 @@ void write_mass(const ExpandResult& result, const Sink& sink) {
 } // namespace
 
 std::uint64_t json_bytes(int lmax) {
-  return 4096 + 61 * std::uint64_t(Coefficients::count(lmax));
+  return 4096 + 80 * std::uint64_t(lmax) + 61 * std::uint64_t(Coefficients::count(lmax));
 }
 
 void write_json(const ExpandResult& result, const Sink& sink) {

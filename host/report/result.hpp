@@ -17,7 +17,7 @@ namespace cowgpu {
 /// Seconds of the parts of a run.
 struct Timings {
   double load = 0;    ///< reading and checking the mesh
-  double device = 0;  ///< opening the device
+  double device = 0;  ///< opening the device, beyond the time that loading took
   double moments = 0; ///< planning, computing, normalising
   double verify = 0;
   double surfaces = 0; ///< maps to the sphere and their expansions
@@ -61,7 +61,8 @@ void write_json(const ExpandResult& result, const Sink& sink);
 std::uint64_t json_bytes(int lmax);
 
 /// The result as CSV: comment lines with conventions and provenance, a line of column names, then a row for each l and
-/// m >= 0, by l, then m. Mass multipoles alone have the columns l,m,re,im of Q_lm / R^l; with surfaces each expansion has
+/// m >= 0, by l, then m. Mass multipoles alone have the columns l,m,re,im of Q_lm / R^l, and `error_estimate` in the comments
+/// is the estimated error of the norm of degrees 0, 1, ... in their units; with surfaces each expansion has
 /// columns of its own, mass_re,mass_im and stretch_f_r_re,stretch_f_r_im ... stretch_z_im, and the comment lines say
 /// origin, removed means and map of each.
 void write_csv(const ExpandResult& result, const Sink& sink);

@@ -46,18 +46,15 @@ void write_accuracy(const ExpandResult& result, const Sink& sink) {
     sink("accuracy: not checked (--verify none)\n");
     return;
   }
-  for (const Agreement& a : accuracy.agreements) {
-    const bool cancels = a.errors.weighed < a.errors.worst; // terms cancel: judged beside the degree's bound
-    sink(fmt::format("accuracy: {} against {}: {:.1e}{} (worst degree {}, bound {:.1e}: {})\n", a.path, a.against,
-                     a.errors.worst, cancels ? fmt::format(", weighed by cancellation {:.1e}", a.errors.weighed) : "",
-                     a.errors.worst_degree, accuracy.bound, a.errors.weighed <= accuracy.bound ? "passed" : "FAILED"));
-  }
+  for (const std::string& sentence : sentences(accuracy.estimate)) sink("accuracy: " + sentence + "\n");
+  for (const Agreement& a : accuracy.agreements)
+    sink(fmt::format("accuracy: {} against {}: {:.1e} of degree {}, {:.2g} of its estimated error (bound {:.0f}: {})\n",
+                     a.path, a.against, a.errors.relative(), a.errors.degree, a.errors.ratio, Accuracy::bound,
+                     a.errors.ratio <= Accuracy::bound ? "passed" : "FAILED"));
   sink(fmt::format(
-      "accuracy: paths compared on {} triangles{}, degrees 0 to {}; left out on all of them: at most {:.0e} of "
-      "a degree's bound\n",
-      accuracy.triangles,
+      "accuracy: compared on {} triangles{}, degrees 0 to {}\n", accuracy.triangles,
       accuracy.triangles < result.body.surface.faces().size() ? fmt::format(" (sample, seed {})", accuracy.seed) : "",
-      result.mass.lmax, result.cut_off));
+      result.mass.lmax));
 }
 
 void write_computed(const ExpandResult& result, const Sink& sink) {

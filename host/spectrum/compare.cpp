@@ -8,8 +8,10 @@ namespace cowgpu {
 namespace {
 
 template <class Value>
-DegreeErrors compare_with(const Coefficients& a, std::span<const double> bound, const Value& b) {
+DegreeErrors compare_with(const Coefficients& a, std::span<const double> estimate, const Value& b) {
   DegreeErrors errors;
+  // What is beyond the range of doubles beside the largest degree is no error.
+  const double nothing = 1e-250 * *std::max_element(estimate.begin(), estimate.end());
   for (int l = 0; l <= a.lmax; ++l) {
     long double difference = 0, square = 0;
     for (int m = 0; m <= l; ++m) {
@@ -20,18 +22,13 @@ DegreeErrors compare_with(const Coefficients& a, std::span<const double> bound, 
       difference += weight * (dre * dre + dim * dim);
       square += weight * (re * re + im * im);
     }
-    const double limit = bound[std::size_t(l)];
-    double scale = double(std::sqrt(square));
-    if (l == 1 || scale < 1e-3 * limit) scale = limit;
-    // What is beyond the range of doubles beside the largest bound is no error.
-    const bool vanishes = difference == 0 || double(std::sqrt(difference)) <= 1e-280 * bound[0];
-    const double error = vanishes ? 0.0 : double(std::sqrt(difference)) / scale;
-    errors.relative.push_back(error);
-    const double weighed = vanishes ? 0.0 : error / std::max(1.0, limit / (15 * scale));
-    if (!std::isnan(errors.weighed) && !(weighed <= errors.weighed)) errors.weighed = weighed;
-    if (!std::isnan(errors.worst) && !(error <= errors.worst)) {
-      errors.worst = error;
-      errors.worst_degree = l;
+    errors.difference.push_back(double(std::sqrt(difference)));
+    errors.norm.push_back(double(std::sqrt(square)));
+    const double apart = errors.difference.back();
+    const double ratio = apart <= nothing ? 0 : apart / estimate[std::size_t(l)];
+    if (!std::isnan(errors.ratio) && !(ratio <= errors.ratio)) {
+      errors.ratio = ratio;
+      errors.degree = l;
     }
   }
   return errors;
@@ -39,18 +36,19 @@ DegreeErrors compare_with(const Coefficients& a, std::span<const double> bound, 
 
 } // namespace
 
-DegreeErrors compare(const Coefficients& a, const Coefficients& b, std::span<const double> bound) {
-  return compare_with(a, bound, [&](std::size_t i) {
+double DegreeErrors::relative() const {
+  const std::size_t l = std::size_t(degree);
+  return difference[l] == 0 ? 0 : difference[l] / norm[l];
+}
+
+DegreeErrors compare(const Coefficients& a, const Coefficients& b, std::span<const double> estimate) {
+  return compare_with(a, estimate, [&](std::size_t i) {
     return std::pair<long double, long double>(b.values[i].real(), b.values[i].imag());
   });
 }
 
-DegreeErrors compare(const Coefficients& a, std::span<const long double> b, std::span<const double> bound) {
-  return compare_with(a, bound, [&](std::size_t i) { return std::pair(b[2 * i], b[2 * i + 1]); });
-}
-
-double expected_error(int lmax) {
-  return 3e-14 * std::max(1.0, lmax / 512.0);
+DegreeErrors compare(const Coefficients& a, std::span<const long double> b, std::span<const double> estimate) {
+  return compare_with(a, estimate, [&](std::size_t i) { return std::pair(b[2 * i], b[2 * i + 1]); });
 }
 
 } // namespace cowgpu

@@ -1,23 +1,21 @@
 #include "host/spectrum/verify.hpp"
 
 #include "host/mesh/tensors.hpp"
+#include "host/moment_terms.hpp"
 #include "host/plan/moments.hpp"
-#include "host/reference/moments.hpp"
+#include "host/spectrum/translate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <numeric>
+#include <optional>
 #include <random>
 
 namespace cowgpu {
 namespace {
 
-constexpr std::size_t sample_size = 256;
-
-// The reference leaves out what is this small beside the bound of a degree: far below its own rounding.
-constexpr double reference_tolerance = 1e-18;
+constexpr std::size_t sample_size = 128;
 
 std::vector<Face> sample_of(std::span<const Face> faces, std::uint64_t seed) {
   std::vector<Face> sample;
@@ -26,17 +24,32 @@ std::vector<Face> sample_of(std::span<const Face> faces, std::uint64_t seed) {
   return sample;
 }
 
+unsigned threads_of(const Backend& backend) {
+  return backend.facts().type == "cpu" ? backend.facts().threads : 0;
+}
+
+std::vector<double> degree_norms(const Coefficients& q) {
+  std::vector<double> norm;
+  for (int l = 0; l <= q.lmax; ++l) norm.push_back(degree_norm(q, l));
+  return norm;
+}
+
+void add(std::vector<double>& sum, const std::vector<double>& more) {
+  sum.resize(more.size());
+  for (std::size_t i = 0; i < more.size(); ++i) sum[i] += more[i];
+}
+
 } // namespace
 
 const Agreement* Accuracy::worst() const {
   const Agreement* worst = nullptr;
   for (const Agreement& a : agreements)
-    if (!worst || (!std::isnan(worst->errors.weighed) && !(a.errors.weighed <= worst->errors.weighed))) worst = &a;
+    if (!worst || (!std::isnan(worst->errors.ratio) && !(a.errors.ratio <= worst->errors.ratio))) worst = &a;
   return worst;
 }
 
 bool Accuracy::passed() const {
-  return worst() && worst()->errors.weighed <= bound;
+  return worst() && worst()->errors.ratio <= bound;
 }
 
 std::vector<MomentProblem> mass_problems(const Body& body, int lmax, double cut_off) {
@@ -57,39 +70,33 @@ std::vector<MomentProblem> mass_problems(const Body& body, int lmax, double cut_
   return problems;
 }
 
-std::vector<double> degree_bound(std::span<const MomentProblem> problems) {
-  std::vector<double> sum;
-  for (const MomentProblem& problem : problems) {
-    const std::vector<double> bound = plan::degree_bound(problem);
-    sum.resize(bound.size());
-    for (std::size_t l = 0; l < bound.size(); ++l) sum[l] += bound[l];
-  }
-  return sum;
-}
-
 Coefficients mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor,
-                          RunReport* report) {
+                          RunReport* report, std::vector<std::vector<double>>* norms) {
   Coefficients sum;
-  RunReport runs;
+  RunReport all;
+  if (norms) norms->clear();
   for (const MomentProblem& problem : problems) {
     RunReport run;
-    Coefficients q = backend.moments(problem, monitor, &run);
+    const std::optional<MomentProblem> near = near_problem(problem);
+    Coefficients q = backend.moments(near ? *near : problem, monitor, &run);
+    if (norms) norms->push_back(degree_norms(q));
+    if (near) q = translated(problem, *near, q);
     if (&problem == problems.data())
       sum = std::move(q);
     else
       for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += q.values[i];
-    runs.seconds += run.seconds;
-    runs.setup_seconds += run.setup_seconds;
-    runs.elements += run.elements;
-    runs.full_elements += run.full_elements;
-    runs.pairs += run.pairs;
-    runs.kernels.insert(runs.kernels.end(), run.kernels.begin(), run.kernels.end());
+    all.seconds += run.seconds;
+    all.setup_seconds += run.setup_seconds;
+    all.elements += run.elements;
+    all.full_elements += run.full_elements;
+    all.pairs += run.pairs;
+    all.kernels.insert(all.kernels.end(), run.kernels.begin(), run.kernels.end());
   }
-  if (report) *report = std::move(runs);
+  if (report) *report = std::move(all);
   return sum;
 }
 
-Agreement compare_with_tensors(const Body& body, const Coefficients& q) {
+Agreement compare_with_tensors(const Body& body, const Coefficients& q, std::span<const double> estimate) {
   Coefficients ours = q;
   ours.lmax = std::min(q.lmax, 2);
   ours.values.resize(Coefficients::count(ours.lmax));
@@ -104,28 +111,31 @@ Agreement compare_with_tensors(const Body& body, const Coefficients& q) {
         std::sqrt(5 / (96 * pi)) * std::complex(t(0, 0) - t(1, 1), 2 * t(0, 1));
   }
   return {"degrees 0 and 2", "mass and quadrupole tensor",
-          compare(ours, expected, degree_bound(mass_problems(body, ours.lmax, 0)))};
+          compare(ours, expected, estimate.first(std::size_t(ours.lmax) + 1))};
 }
 
-std::uint64_t verify_bytes(const MomentProblem& problem, const Backend& backend, Verify how) {
+std::uint64_t verify_bytes(const MomentProblem& problem, Verify how) {
   if (how == Verify::none) return 0;
-  const std::uint64_t count = Coefficients::count(problem.lmax);
-  if (backend.facts().type != "cpu") return 32 * count + make_cpu_backend()->moments_memory(problem).host;
-  // One partial sum a thread and the total, and rows of 16 triangles a thread.
-  const std::uint64_t threads = std::min(8U, all_threads());
-  return 16 * count + sizeof(long double) * 2 * count * (threads + 1) +
-         threads * 16 * 3 * sizeof(reference::ComplexOf<long double>) * (std::uint64_t(problem.lmax) + 1) +
-         std::min<std::uint64_t>(problem.faces.size(), how == Verify::full ? problem.faces.size() : sample_size) * 256;
+  MomentProblem part = problem;
+  if (how == Verify::sample) part.faces = part.faces.first(std::min(part.faces.size(), sample_size));
+  return 16 * Coefficients::count(problem.lmax) + moment_terms_bytes(part);
+}
+
+std::vector<double> problem_error(const MomentProblem& problem, const RoundingTerms& rounding) {
+  const std::vector<double> error = error_estimate(rounding);
+  const std::optional<MomentProblem> near = near_problem(problem);
+  return near ? translated_error(problem, *near, error, rounding.bound[0]) : error;
 }
 
 Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify how, std::uint64_t seed,
-                        Monitor& monitor) {
+                        Monitor& monitor, RoundingTerms* rounding) {
   Accuracy accuracy;
   accuracy.how = how;
   if (how == Verify::none) return accuracy;
   std::vector<Face> sample;
   MomentProblem part = problem;
-  if (how == Verify::sample && problem.faces.size() > sample_size) {
+  const bool all = how == Verify::full || problem.faces.size() <= sample_size;
+  if (!all) {
     sample = sample_of(problem.faces, seed);
     part.faces = sample;
     const double own = brillouin_radius(part.vertices, part.faces, part.origin);
@@ -133,34 +143,53 @@ Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify h
   }
   accuracy.triangles = part.faces.size();
   accuracy.seed = seed;
-  accuracy.bound = expected_error(problem.lmax);
-  const std::vector<double> bound = plan::degree_bound(part);
   const Coefficients done = backend.moments(part, monitor);
-  if (backend.facts().type != "cpu") {
-    const Coefficients other = make_cpu_backend()->moments(part, monitor);
-    accuracy.agreements.push_back({"Vulkan", "CPU path", compare(done, other, bound)});
-  } else {
-    const auto other = reference::moments<long double>(part, reference_tolerance, monitor);
-    accuracy.agreements.push_back({"CPU path", "reference in extended precision", compare(done, other, bound)});
+  const MomentTerms terms = moment_terms(part, threads_of(backend), monitor);
+  plan::DegreeSums sums = plan::degree_sums(part);
+  // The norms are the second recursion's: the backend's may be wrong.
+  const RoundingTerms sampled = {terms.root, degree_norms(terms.sum), sums.bound, sums.left_out,
+                                 double(part.faces.size())};
+  accuracy.agreements.push_back({backend.facts().type == "cpu" ? "CPU path" : "Vulkan", "second recursion",
+                                 compare(done, terms.sum, error_estimate(sampled))});
+  if (!rounding) return accuracy;
+  rounding->root = terms.root;
+  if (!all) {
+    const std::vector<double> sample_bound = std::move(sums.root);
+    sums = plan::degree_sums(problem);
+    rounding->root = root_by_sample(terms.root, sample_bound, sums.root);
   }
+  rounding->bound = std::move(sums.bound);
+  rounding->left_out = std::move(sums.left_out);
+  rounding->triangles = double(problem.faces.size());
   return accuracy;
 }
 
-Accuracy verify_all(std::span<const MomentProblem> problems, Backend& backend, Verify how, std::uint64_t seed,
+Accuracy verify_all(std::span<const MomentProblem> problems, const Coefficients& mass,
+                    std::span<const std::vector<double>> norms, Backend& backend, Verify how, std::uint64_t seed,
                     Monitor& monitor) {
   Accuracy all;
-  for (const MomentProblem& problem : problems) {
-    Accuracy one = verify_moments(problem, backend, how, seed, monitor);
-    if (&problem == problems.data()) {
+  std::vector<double> squares(std::size_t(mass.lmax) + 1);
+  for (std::size_t p = 0; p < problems.size(); ++p) {
+    const std::optional<MomentProblem> near = near_problem(problems[p]);
+    RoundingTerms rounding;
+    Accuracy one = verify_moments(near ? *near : problems[p], backend, how, seed, monitor, &rounding);
+    if (how == Verify::none) return one;
+    rounding.norm = norms[p];
+    const std::vector<double> error = problem_error(problems[p], rounding);
+    for (std::size_t l = 0; l < squares.size(); ++l) squares[l] += error[l] * error[l];
+    add(one.estimate.bound, near ? plan::degree_bound(problems[p]) : rounding.bound);
+    if (p == 0) {
       all = std::move(one);
       continue;
     }
     all.triangles += one.triangles;
-    // Of the same paths each time, in the same order.
+    add(all.estimate.bound, one.estimate.bound);
+    // The same paths each time, in the same order.
     for (std::size_t i = 0; i < one.agreements.size(); ++i)
-      if (!(one.agreements[i].errors.weighed <= all.agreements[i].errors.weighed))
-        all.agreements[i] = one.agreements[i];
+      if (!(one.agreements[i].errors.ratio <= all.agreements[i].errors.ratio)) all.agreements[i] = one.agreements[i];
   }
+  for (const double s : squares) all.estimate.error.push_back(std::sqrt(s));
+  all.estimate.norm = degree_norms(mass);
   return all;
 }
 

@@ -66,14 +66,14 @@ void compare_path(Backend& backend, const MomentProblem& problem, std::span<cons
   CHECK(result.origin == problem.origin);
   CHECK(result.reference_radius == problem.reference_radius);
   CHECK(result.density == problem.density);
-  const DegreeErrors errors = cowgpu::compare(result, reference, plan::degree_bound(problem));
+  const BoundErrors errors = compare_by_bound(result, reference, plan::degree_bound(problem));
   check_at_most(errors.worst, figure,
                 fmt::format("{}, {} faces, lmax {}, degree {}", backend.facts().type, problem.faces.size(),
                             problem.lmax, errors.worst_degree));
 }
 
 void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure) {
-  const DegreeErrors errors = cowgpu::compare(a, b, plan::degree_bound(problem));
+  const BoundErrors errors = compare_by_bound(a, b, plan::degree_bound(problem));
   check_at_most(errors.worst, figure, fmt::format("lmax {}, degree {}", problem.lmax, errors.worst_degree));
 }
 

@@ -3,7 +3,7 @@
 
 #include "host/backend.hpp"
 #include "host/mesh/raw_mesh.hpp"
-#include "host/spectrum/compare.hpp"
+#include "tests/support/bound_errors.hpp"
 
 #include <functional>
 #include <memory>
@@ -31,7 +31,7 @@ public:
 
   void each(const std::function<void(Backend&)>& check);
 
-  /// Errors against the reference in 80-bit arithmetic, as compare() counts them, are at most `figure` on every path.
+  /// Errors against the reference in 80-bit arithmetic, as compare_by_bound() counts them, are at most `figure` on every path.
   /// `tolerance` is the reference's own.
   void compare(const MomentProblem& problem, double figure, double tolerance = 0);
 
@@ -46,7 +46,7 @@ Coefficients moments(Backend& backend, const MomentProblem& problem, RunReport* 
 void compare_path(Backend& backend, const MomentProblem& problem, std::span<const long double> reference,
                   double figure);
 
-/// `a` and `b` are at most `figure` apart, as compare() counts it with the bound of `problem`.
+/// `a` and `b` are at most `figure` apart, as compare_by_bound() counts it with the bound of `problem`.
 void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure);
 
 /// error <= figure, with the number in words: Catch prints what is below 1e-5 as 0.

@@ -145,6 +145,15 @@ function facts(title, rows) {
   return el("section", {}, el("h3", {}, title), list);
 }
 
+// What is known of the multipoles, and whether the check passed; files without an estimate say the check's figure alone.
+const accuracyOf = (accuracy) => {
+  if (accuracy?.worst === undefined || accuracy.worst === null) return undefined;
+  const check = `${number(accuracy.worst, 3)}, bound ${number(accuracy.bound, 3)}: ${accuracy.passed ? "passed" : "failed"}`;
+  const sentences = accuracy.estimate?.sentences;
+  if (!Array.isArray(sentences)) return check;
+  return [...sentences.map(String), `error of the check over its estimate ${check}`].join("; ");
+};
+
 const lineOf = (command) => {
   const text = shellLine(command);
   return el(
@@ -171,12 +180,7 @@ export function provenance(data) {
       ["created", result.created],
       ["device", [device.name, device.driver, device.api].filter(Boolean).join(", ") || null],
       ["kind of device", device.type],
-      [
-        "accuracy",
-        result.accuracy?.worst === undefined
-          ? undefined
-          : `${number(result.accuracy.worst, 3)}, bound ${number(result.accuracy.bound, 3)}: ${result.accuracy.passed ? "passed" : "failed"}`,
-      ],
+      ["accuracy", accuracyOf(result.accuracy)],
       ["time in all", typeof result.timings?.total === "number" ? `${number(result.timings.total, 4)} s` : undefined],
     ]),
     facts("Mesh", [
