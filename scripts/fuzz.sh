@@ -24,7 +24,8 @@ fi
 seeds() {
   case $1 in
     gltf) echo 'gltf glb' ;;
-    mesh_format) echo 'off obj ply stl gltf glb' ;;
+    mesh_format) echo 'off obj ply stl gltf glb tab' ;;
+    plates) echo tab ;;
     map_ply) echo ply ;;
     coefficient_csv | grid_csv) echo csv ;;
     coefficient_json) echo json ;;
@@ -56,7 +57,7 @@ run() {
 
 if (($# == 0)); then
   # mesh_format, which is all of the mesh readers at once, runs when it is asked for.
-  set -- off obj ply stl gltf map_ply coefficient_csv coefficient_json gfc shtools grid_csv point
+  set -- off obj ply stl gltf plates map_ply coefficient_csv coefficient_json gfc shtools grid_csv point
 fi
 rm -f -- "$build/failed"
 for reader; do

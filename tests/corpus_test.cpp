@@ -57,7 +57,7 @@ TEST_CASE("every accepted file of the corpus has the volume it says", "[corpus][
     CHECK(facts.volume == volume(surface));
     CHECK((surface.mesh().face_lines.empty() || surface.mesh().face_lines.size() == surface.faces().size()));
   }
-  for (const char* suffix : {".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ""}) CHECK(suffixes[suffix] > 0);
+  for (const char* suffix : {".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".tab", ""}) CHECK(suffixes[suffix] > 0);
 }
 
 TEST_CASE("every prefix of an accepted file is read or refused by name", "[corpus][readers]") {

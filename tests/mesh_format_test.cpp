@@ -48,6 +48,12 @@ TEST_CASE("formats are told by what files hold, whatever they are called", "[for
     CHECK(format_of(glb_bytes(body), called) == "glTF");
     CHECK(format_of(" \n{\"asset\": 1}", called) == "glTF");
   }
+  CHECK(format_of("8 12\n0 0 0\n", "x.off") == "PDS plates");
+  CHECK(format_of(" 8 12 \r\n 1 0. 0. 0.\r\n", "x.tab") == "PDS plates");
+  CHECK(format_of("8\n1 0 0 0\n", "x") == "PDS plates");
+  for (const char* other :
+       {"8\n0.5 0 0\n", "8 12\n0 0\n", "8 12\nx y z\n", "0.5 1\n0 0 0\n", "-1 2\n0 0 0\n", "8 12\n"})
+    CHECK(outcome_of([&] { mesh_format_of(other, "x.tab"); }).fault == "file-format");
   CHECK(format_of("4 4 0\n", "x.off") == "OFF"); // by the name, where the content is silent
   CHECK(format_of("4 4 0\n", "X.OBJ") == "OBJ");
   CHECK(outcome_of([] { mesh_format_of("4 4 0\n", "x.txt"); }).fault == "file-format");

@@ -95,7 +95,7 @@ TEST_CASE("numbers are read to the last bit", "[off]") {
   }
 }
 
-TEST_CASE("polygons become fans from their first corner and keep their line", "[off]") {
+TEST_CASE("convex polygons become fans from their first corner and keep their line", "[off]") {
   const RawMesh mesh =
       parse_off("OFF 5 2 0\n0 0 0 1 0 0 2 1 0 1 2 0 0 1 0\n5 3 4 0 1 2 # pentagon\n3 0 1 2\n", "x.off");
   CHECK(mesh.faces == std::vector<Face>{{3, 4, 0}, {3, 0, 1}, {3, 1, 2}, {0, 1, 2}});
@@ -109,6 +109,41 @@ TEST_CASE("what is skipped is noted", "[off]") {
   REQUIRE(more.notes.size() == 1);
   CHECK(more.notes[0].find("line 13") != std::string::npos);
   CHECK(parse_off(tetrahedron + "# only a comment\n\n", "x.off").notes.empty());
+}
+
+TEST_CASE("colours and normals under a plain OFF header are read past, whatever their number", "[off]") {
+  const RawMesh expected = parse_off(tetrahedron, "x.off");
+  for (const char* extras : {" 255 0 0 255", " 0.5 0.5 0.5", " 0 0 1 255 0 0 255", " 1", " 1 1 1 1", " 3 0 0 3"}) {
+    std::string text = tetrahedron;
+    for (const char* vertex : {"\n0 0 0\n", "\n1 0 0\n", "\n0 1 0\n", "\n0 0 1\n"})
+      text = replaced(text, vertex, std::string(vertex).substr(0, 6) + extras + "\n");
+    INFO(text);
+    const RawMesh mesh = parse_off(text, "x.off");
+    CHECK(mesh.vertices == expected.vertices);
+    CHECK(mesh.faces == expected.faces);
+    REQUIRE(mesh.notes.size() == 1);
+    CHECK(mesh.notes[0].starts_with("The header says OFF, but vertex lines hold "));
+    // Cut off, it is a file that was cut off; with one number missing, the header is named.
+    CHECK(fault_of([&] { parse_off(text.substr(0, text.size() - 9), "x.off"); }) == "file-truncated");
+  }
+  const std::string uneven =
+      replaced(replaced(tetrahedron, "0 0 0", "0 0 0 255 0 0 255"), "1 0 0", "1 0 0 255 0 0 255");
+  CHECK(message_of(uneven).find("under the header OFF: one with colours must say COFF") != std::string::npos);
+  // Several vertices on a line are what the format allows.
+  CHECK(parse_off("OFF 4 4 6\n0 0 0 1 0 0\n0 1 0 0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", "x").faces ==
+        expected.faces);
+  for (const char* header : {"COFF", "NOFF", "STOFF", "CNOFF"})
+    CHECK(message_of(replaced(tetrahedron, "OFF", header)).find("the header " + std::string(header) + " asks for ") !=
+          std::string::npos);
+}
+
+TEST_CASE("faces of one and two corners are left out and counted", "[off]") {
+  const RawMesh mesh = parse_off(
+      replaced(replaced(tetrahedron, "4 4 6", "4 7 6"), "3 0 1 3", "1 3\n2 0 1\n3 0 1 3\n2 1 0 255 0 0"), "x");
+  CHECK(mesh.faces == parse_off(tetrahedron, "x").faces);
+  CHECK(mesh.face_lines == std::vector<std::uint32_t>{7, 10, 12, 13});
+  CHECK(mesh.notes == std::vector<std::string>{"Left out, as they bound no volume: 2 lines or faces of two corners, "
+                                               "1 point or face of one corner."});
 }
 
 TEST_CASE("messages name file, line, face and what was found", "[off]") {

@@ -5,6 +5,7 @@
 #include "host/io/gltf.hpp"
 #include "host/io/obj.hpp"
 #include "host/io/off.hpp"
+#include "host/io/plates.hpp"
 #include "host/io/ply_header.hpp"
 #include "host/io/ply_reader.hpp"
 #include "host/io/shown.hpp"
@@ -18,13 +19,14 @@
 namespace cowgpu {
 namespace {
 
-enum Index { off, obj, ply, stl, gltf };
+enum Index { off, obj, ply, stl, gltf, plates };
 
 constexpr MeshFormat formats[] = {{"OFF", ".off", parse_off},
                                   {"OBJ", ".obj", parse_obj},
                                   {"PLY", ".ply", parse_ply},
                                   {"STL", ".stl", parse_stl},
-                                  {"glTF", ".gltf .glb", parse_gltf}};
+                                  {"glTF", ".gltf .glb", parse_gltf},
+                                  {"PDS plates", "", parse_plates}}; // suffixes that tables of other things have, too
 
 /// The format whose suffix the name has, in either case; null for another.
 const MeshFormat* by_suffix(const std::string& name) {
@@ -63,6 +65,7 @@ const MeshFormat* by_content(std::string_view bytes, const MeshFormat* suffix) {
   if (is_off_header(word)) return &formats[off];
   if (same_word(word, "solid")) return &formats[stl];
   if (is_obj_statement(word)) return &formats[obj];
+  if (looks_like_plates(bytes)) return &formats[plates];
   return nullptr;
 }
 

@@ -1,15 +1,16 @@
 #include "host/io/obj.hpp"
 
 #include "host/error.hpp"
-#include "host/io/face_fans.hpp"
+#include "host/io/mesh_faces.hpp"
 #include "host/io/sha256.hpp"
 #include "host/io/shown.hpp"
 #include "host/io/words.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 namespace cowgpu {
 namespace {
@@ -75,9 +76,23 @@ const Keyword* keyword(std::string_view word) {
   return found == std::end(keywords) ? nullptr : found;
 }
 
+/// A word that a line may open with, known or not: a line of numbers, or of bytes that are no text, is a broken line.
+bool may_be_keyword(std::string_view word) {
+  return std::string_view("0123456789+-.").find(word[0]) == std::string_view::npos &&
+         std::none_of(word.begin(), word.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; });
+}
+
+/// Thrown where a file that was read as numbered from 1 names vertex 0.
+struct VertexZero {
+  Error error;
+};
+
 class ObjParser {
 public:
-  ObjParser(std::string_view text, const std::string& name) : text_(text), scan_(text), fans_(mesh_) {
+  /// `base`: the number of the first vertex, 1 or 0.
+  ObjParser(std::string_view text, const std::string& name, std::uint32_t base)
+      : text_(text), scan_(text), base_(base), faces_(mesh_, base) {
     mesh_.name = name;
   }
 
@@ -86,13 +101,17 @@ public:
     bool empty = true;
     for (std::string_view word = scan_.word(); !word.empty(); word = scan_.word(), empty = false) {
       const Keyword* known = keyword(word);
-      if (!known) fail_syntax(fmt::format("'{}' is no statement of an OBJ file.", shown(word)));
+      if (!known) {
+        unknown(word);
+        continue;
+      }
+      ++known_;
       switch (known->statement) {
       case Statement::vertex: vertex(); break;
       case Statement::face: face(); break;
-      case Statement::line: ++lines_, skip_joined(); break;
-      case Statement::point: ++points_, skip_joined(); break;
-      case Statement::skipped: scan_.skip_line(); break;
+      case Statement::line: ++lines_, scan_.skip_joined_lines(); break;
+      case Statement::point: ++points_, scan_.skip_joined_lines(); break;
+      case Statement::skipped: scan_.skip_joined_lines(); break;
       case Statement::curve:
         fail(Fault::file_format, fmt::format("free-form curves and surfaces ('{}') are not read. Export the surface "
                                              "as triangles.",
@@ -103,6 +122,9 @@ public:
       }
     }
     if (empty) fail(Fault::file_truncated, "the file is empty. Fetch or export it again.");
+    if (known_ == 0)
+      fail(Fault::file_format, fmt::format("this is no OBJ file: it has no statement of OBJ, but '{}'.",
+                                           fmt::join(unknown_words_, "', '")));
     notes();
     return std::move(mesh_);
   }
@@ -125,7 +147,7 @@ private:
     for (std::string_view word = scan.word(); !word.empty(); word = scan.word()) {
       if (word == "v") ++vertex_count_;
       if (word != "f" && word != "fo") {
-        scan.skip_line();
+        scan.skip_joined_lines();
         continue;
       }
       std::size_t corners = 0;
@@ -137,6 +159,17 @@ private:
     mesh_.vertices.reserve(vertex_count_);
     mesh_.faces.reserve(triangles);
     mesh_.face_lines.reserve(triangles);
+  }
+
+  void unknown(std::string_view word) {
+    if (!may_be_keyword(word) || same_word(word, "v") || same_word(word, "f") || same_word(word, "fo"))
+      fail_syntax(fmt::format("'{}' is no statement of an OBJ file.", shown(word)));
+    ++unknown_lines_;
+    const std::string text = shown(word);
+    if (unknown_words_.size() < 8 &&
+        std::find(unknown_words_.begin(), unknown_words_.end(), text) == unknown_words_.end())
+      unknown_words_.push_back(text);
+    scan_.skip_joined_lines();
   }
 
   void vertex() {
@@ -151,13 +184,13 @@ private:
       if (numbers < 3) p[numbers] = *value;
       if (numbers == 3) weight_ = *value;
     }
-    if (numbers != 3 && numbers != 4 && numbers != 6)
+    if (numbers != 3 && numbers != 4 && numbers != 6 && numbers != 7)
       fail_syntax(
           fmt::format("vertex {} has {} numbers; a vertex has 3 coordinates, alone, with a weight (4) or with a "
-                      "colour (6).",
+                      "colour (6, or 7 with its opacity).",
                       mesh_.vertices.size() + 1, numbers));
     weights_ += numbers == 4 && weight_ != 1;
-    colours_ += numbers == 6;
+    colours_ += numbers >= 6;
     mesh_.vertices.push_back(p);
   }
 
@@ -169,16 +202,20 @@ private:
       fail_syntax(fmt::format("a corner of face {} expected (v, v/vt, v//vn or v/vt/vn), found '{}'.", faces_found_,
                               shown(word)));
     const auto above = static_cast<std::int64_t>(mesh_.vertices.size());
-    if (*value >= 1 && static_cast<std::uint64_t>(*value) <= vertex_count_)
-      return static_cast<std::uint32_t>(*value - 1);
+    const std::int64_t from_first = *value - base_;
+    if (*value >= 0 && from_first >= 0 && static_cast<std::uint64_t>(from_first) < vertex_count_)
+      return static_cast<std::uint32_t>(from_first);
     if (*value < 0 && *value >= -above) return static_cast<std::uint32_t>(above + *value);
     const std::string number = shown(word.substr(0, slash));
-    fail(Fault::mesh_index_range,
-         *value < 0 ? fmt::format("face {} names vertex {}, counted backwards, but {} vertices stand above it.",
-                                  faces_found_, number, above)
-                    : fmt::format(
-                          "face {} names vertex {}, but there are {} vertices, numbered from 1. Export the mesh again.",
-                          faces_found_, number, vertex_count_));
+    const auto refuse = [&](const std::string& why) {
+      return Error(Fault::mesh_index_range, fmt::format("{}:{}: face {} names vertex {}, {}", mesh_.name, scan_.line(),
+                                                        faces_found_, number, why));
+    };
+    if (*value < 0) throw refuse(fmt::format("counted backwards, but {} vertices stand above it.", above));
+    const Error error = refuse(
+        fmt::format("but there are {} vertices, numbered from {}. Export the mesh again.", vertex_count_, base_));
+    if (*value == 0 && base_ == 1) throw VertexZero{error};
+    throw error;
   }
 
   /// "", "/vt", "//vn" or "/vt/vn", where numbers may be missing.
@@ -193,38 +230,43 @@ private:
   }
 
   void face() {
-    fans_.begin(scan_.line());
+    faces_.begin(scan_.line());
     for (std::string_view word = scan_.word_on_joined_lines(); !word.empty(); word = scan_.word_on_joined_lines())
-      fans_.corner(corner(word));
-    if (fans_.corners() < 3)
-      fail_syntax(fmt::format("face {} has {} corners; a face needs 3.", faces_found_, fans_.corners()));
+      faces_.corner(corner(word));
+    // A short face at the very end of the file is one that was cut off.
+    if (faces_.corners() == 0 || (faces_.corners() < 3 && scan_.left() == 0))
+      fail_syntax(fmt::format("face {} has {} corners; a face needs 3.", faces_found_, faces_.corners()));
+    faces_.end();
     ++faces_found_;
   }
 
-  void skip_joined() {
-    while (!scan_.word_on_joined_lines().empty()) {
-    }
-  }
-
   void notes() {
-    fans_.note();
+    faces_.finish(points_, lines_);
+    if (base_ == 0)
+      mesh_.notes.push_back(
+          "The faces name vertex 0, and none the last one counted from 1: vertices were numbered from 0.");
     if (weights_ != 0)
       mesh_.notes.push_back(
           fmt::format("{} vertices have a weight other than 1, which counts for curves only: their x, y "
                       "and z were taken as they are.",
                       weights_));
     if (colours_ != 0) mesh_.notes.push_back("Colours of the vertices were skipped.");
-    if (lines_ + points_ != 0)
+    if (unknown_lines_ != 0)
       mesh_.notes.push_back(
-          fmt::format("{} line and {} point elements were skipped: they bound no volume.", lines_, points_));
+          fmt::format("{} that OBJ does not have {} skipped: {}.",
+                      unknown_lines_ == 1 ? "A statement" : fmt::format("{} statements", unknown_lines_),
+                      unknown_lines_ == 1 ? "was" : "were", fmt::join(unknown_words_, ", ")));
   }
 
   std::string_view text_;
   WordScanner scan_;
   RawMesh mesh_;
-  FaceFans fans_;
+  std::uint32_t base_;
+  MeshFaces faces_;
   double weight_ = 1;
   std::uint64_t vertex_count_ = 0, faces_found_ = 0, weights_ = 0, colours_ = 0, lines_ = 0, points_ = 0;
+  std::uint64_t known_ = 0, unknown_lines_ = 0;
+  std::vector<std::string> unknown_words_; // some
 };
 
 } // namespace
@@ -234,7 +276,21 @@ bool is_obj_statement(std::string_view word) {
 }
 
 RawMesh parse_obj(std::string_view bytes, const std::string& name) {
-  RawMesh mesh = ObjParser(without_byte_order_mark(bytes), name).parse();
+  const std::string_view text = without_byte_order_mark(bytes);
+  std::optional<Error> names_zero;
+  RawMesh mesh;
+  try {
+    mesh = ObjParser(text, name, 1).parse();
+  } catch (const VertexZero& zero) {
+    names_zero = zero.error;
+  }
+  if (names_zero) {
+    try {
+      mesh = ObjParser(text, name, 0).parse();
+    } catch (const Error& error) {
+      throw error.fault() == Fault::mesh_index_range ? *names_zero : error;
+    }
+  }
   mesh.sha256 = sha256_hex(bytes);
   return mesh;
 }

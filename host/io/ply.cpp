@@ -95,7 +95,7 @@ private:
       if (property.is_list)
         fail(Fault::file_format, property.line, "a property of a vertex is a scalar type and a name.");
       for (std::size_t c = 0; c < 3; ++c)
-        if (property.name == std::string_view("xyz").substr(c, 1)) {
+        if (!property.again && property.name == std::string_view("xyz").substr(c, 1)) {
           if (!is_real(property.type))
             fail(Fault::file_format, property.line, "x, y and z must be of type double or float.");
           coordinates_[c] = {stride_, bytes_of(property.type)};

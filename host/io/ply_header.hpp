@@ -13,8 +13,8 @@ namespace cowgpu {
 
 enum class PlyEncoding { ascii, little_endian, big_endian };
 
-/// Scalar types: char uchar short ushort int uint float double, or int8 ... float64.
-enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+/// Scalar types: char uchar short ushort int uint float double, or int8 ... float64; int64 and uint64 as meshio writes them.
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 std::size_t bytes_of(PlyType type);
 bool is_real(PlyType type);
 
@@ -24,6 +24,7 @@ struct PlyProperty {
   bool is_list = false;
   PlyType count_type = PlyType::int8; ///< of a list; never a real number
   std::size_t line = 0;               ///< of the header, from 1
+  bool again = false;                 ///< an earlier property of the element has this name; find() returns that one
 };
 
 struct PlyElement {
@@ -46,14 +47,15 @@ struct PlyHeader {
   std::size_t lines = 0;
 };
 
-/// Whether the bytes open as a PLY file does: the word ply, alone on its line.
+/// Whether the bytes open as a PLY file does: the word ply, alone on its line, after a byte order mark if there is one.
 bool starts_as_ply(std::string_view bytes);
 
-/// Reads the header. Its lines end with LF, CRLF or CR, as the first one does; comments and obj_info may stand anywhere
-/// after it.
+/// Reads the header. Its lines end with LF, CRLF, LFCR or CR; comments, obj_info and empty lines may stand anywhere after the
+/// first one, and a byte order mark before it. A property's name is the rest of its line, blanks within it included. The data
+/// begin after end_header and a line end like that of the first line.
 ///
 /// Throws Error("NAME:LINE: ...") with file_format (no PLY, or a version other than 1.0), file_syntax (a header that breaks
-/// the grammar, two elements or two properties of one name), file_truncated (no end_header).
+/// the grammar, two elements of one name), file_truncated (no end_header).
 PlyHeader read_ply_header(std::string_view bytes, const std::string& name);
 
 } // namespace cowgpu

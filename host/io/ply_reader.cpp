@@ -1,6 +1,6 @@
 #include "host/io/ply_reader.hpp"
 
-#include "host/io/face_fans.hpp"
+#include "host/io/mesh_faces.hpp"
 #include "host/io/ply_header.hpp"
 #include "host/io/sha256.hpp"
 #include "host/io/shown.hpp"
@@ -12,6 +12,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 namespace cowgpu {
@@ -37,6 +38,7 @@ public:
   /// The least that `properties` values take.
   static std::size_t least_bytes(const PlyElement& element) { return 2 * element.properties.size(); }
   static std::size_t triangle_bytes(PlyType) { return 6; }
+  static std::size_t value_bytes(PlyType) { return 2; }
   std::string rest() {
     return take().empty() ? "" : fmt::format("Data after the last element were ignored (from line {}).", scan_.line());
   }
@@ -57,6 +59,7 @@ public:
     switch (type) {
     case PlyType::float32: return converted<double, float>();
     case PlyType::float64: return converted<double, double>();
+    case PlyType::uint64: return converted<double, std::uint64_t>();
     default: break;
     }
     const auto value = integer(type);
@@ -70,6 +73,12 @@ public:
     case PlyType::int16: return converted<std::int64_t, std::int16_t>();
     case PlyType::uint16: return converted<std::int64_t, std::uint16_t>();
     case PlyType::int32: return converted<std::int64_t, std::int32_t>();
+    case PlyType::int64: return converted<std::int64_t, std::int64_t>();
+    case PlyType::uint64: {
+      const auto value = converted<std::uint64_t, std::uint64_t>();
+      constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
+      return value ? std::optional(static_cast<std::int64_t>(std::min(*value, most))) : std::nullopt;
+    }
     default: return converted<std::int64_t, std::uint32_t>();
     }
   }
@@ -86,6 +95,7 @@ public:
   }
   static std::size_t least_bytes(const PlyElement& element) { return element.least_bytes(); }
   static std::size_t triangle_bytes(PlyType index) { return 3 * bytes_of(index); }
+  static std::size_t value_bytes(PlyType type) { return bytes_of(type); }
   std::string rest() const {
     return left() == 0 ? "" : fmt::format("{} bytes after the last element were ignored (from byte {}).", left(), at_);
   }
@@ -107,14 +117,18 @@ private:
 };
 
 bool is_index_list(const PlyProperty& property) {
-  return property.name == "vertex_indices" || property.name == "vertex_index";
+  return !property.again && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+auto index_list(const PlyElement& element) {
+  return std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
 }
 
 template <class Data>
 class BodyReader {
 public:
   BodyReader(const PlyHeader& header, Data data, const std::string& name)
-      : header_(header), data_(std::move(data)), fans_(mesh_) {
+      : header_(header), data_(std::move(data)), faces_(mesh_) {
     mesh_.name = name;
     for (const PlyElement& e : header.elements) {
       if (e.name == "vertex") vertex_count_ = e.count;
@@ -129,11 +143,23 @@ public:
         vertices(element);
       } else if (element.name == "face") {
         faces(element);
+      } else if (element.name == "tristrips") {
+        strips(element);
       } else {
         skip(element);
         if (element.count != 0 && skipped.size() < 8) skipped.push_back(shown(element.name));
       }
-    fans_.note();
+    faces_.finish();
+    if (strips_ != 0)
+      mesh_.notes.push_back(fmt::format("{} triangle {} cut into {} triangles.", strips_,
+                                        strips_ == 1 ? "strip was" : "strips were", strip_triangles_));
+    for (const PlyElement& element : header_.elements)
+      for (const PlyProperty& property : element.properties)
+        if (property.again && twice_.size() < 8)
+          twice_.push_back(fmt::format("{} of {}", shown(property.name), shown(element.name)));
+    if (!twice_.empty())
+      mesh_.notes.push_back(
+          fmt::format("Announced more than once, and read where announced first: {}.", fmt::join(twice_, ", ")));
     if (!skipped.empty()) mesh_.notes.push_back(fmt::format("Elements were skipped: {}.", fmt::join(skipped, ", ")));
     if (const std::string rest = data_.rest(); !rest.empty()) mesh_.notes.push_back(rest);
     return std::move(mesh_);
@@ -182,8 +208,9 @@ private:
     std::vector<int> coordinate; // of each property; -1: skipped
     for (const PlyProperty& p : element.properties) {
       const std::size_t c = p.name.size() == 1 ? std::string_view("xyz").find(p.name) : std::string_view::npos;
-      coordinate.push_back(c == std::string_view::npos || p.is_list ? -1 : static_cast<int>(c));
-      if (coordinate.back() < 0 && others.size() < 100) others += (others.empty() ? "" : ", ") + shown(p.name);
+      coordinate.push_back(c == std::string_view::npos || p.is_list || p.again ? -1 : static_cast<int>(c));
+      if (coordinate.back() < 0 && !p.again && others.size() < 100)
+        others += (others.empty() ? "" : ", ") + shown(p.name);
     }
     // What the file cannot hold is not reserved: a header may promise anything.
     mesh_.vertices.reserve(std::min<std::uint64_t>(element.count, data_.left() / Data::least_bytes(element) + 1));
@@ -199,17 +226,24 @@ private:
     if (!others.empty()) mesh_.notes.push_back(fmt::format("Properties of the vertices were skipped: {}.", others));
   }
 
-  std::uint32_t corner(PlyType type) {
+  /// Nothing for -1, which ends a strip.
+  std::optional<std::uint32_t> corner_or_end(PlyType type) {
     const std::int64_t vertex = given(data_.integer(type));
+    return vertex == -1 ? std::nullopt : std::optional(valid(vertex));
+  }
+
+  std::uint32_t corner(PlyType type) { return valid(given(data_.integer(type))); }
+
+  std::uint32_t valid(std::int64_t vertex) const {
     if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count_)
       fail(Fault::mesh_index_range,
-           fmt::format("face {} names vertex {}, but there are {} vertices, numbered from 0. Export the mesh again.",
-                       faces_found_, vertex, vertex_count_));
+           fmt::format("{} names vertex {}, but there are {} vertices, numbered from 0. Export the mesh again.",
+                       in_strips_ ? "a triangle strip" : fmt::format("face {}", faces_found_), vertex, vertex_count_));
     return static_cast<std::uint32_t>(vertex);
   }
 
   void faces(const PlyElement& element) {
-    const auto list = std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
+    const auto list = index_list(element);
     if (list == element.properties.end()) return; // without a face, see require()
     const std::size_t least = Data::least_bytes(element) + Data::triangle_bytes(list->type);
     const std::size_t room = std::min<std::uint64_t>(element.count, data_.left() / least + 1);
@@ -222,17 +256,61 @@ private:
           continue;
         }
         const std::uint64_t corners = length(*property);
-        if (corners < 3)
+        if (corners < 1)
           fail(Fault::file_syntax, fmt::format("face {} has {} corners; a face needs 3.", faces_found_, corners));
-        fans_.begin(data_.line());
-        for (std::uint64_t i = 0; i < corners; ++i) fans_.corner(corner(property->type));
+        faces_.begin(data_.line());
+        for (std::uint64_t i = 0; i < corners; ++i) faces_.corner(corner(property->type));
+        faces_.end();
       }
+  }
+
+  /// Lists of strips with -1 between them: every three corners that follow each other are a triangle, every second one turned.
+  /// Those that name a vertex twice join strips and are none.
+  void strips(const PlyElement& element) {
+    const auto list = index_list(element);
+    if (list == element.properties.end()) return;
+    in_strips_ = true;
+    for (std::uint64_t i = 0; i < element.count; ++i)
+      for (auto property = element.properties.begin(); property != element.properties.end(); ++property) {
+        if (property != list) {
+          skip(*property);
+          continue;
+        }
+        const std::uint64_t count = length(*property);
+        faces_.begin(data_.line());
+        faces_.reserve(std::min<std::uint64_t>(count, data_.left() / Data::value_bytes(property->type)));
+        strip(count, property->type);
+      }
+    in_strips_ = false;
+  }
+
+  void strip(std::uint64_t count, PlyType type) {
+    std::uint32_t a = 0, b = 0;
+    std::uint64_t in_strip = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::optional<std::uint32_t> next = corner_or_end(type);
+      if (!next) {
+        in_strip = 0;
+        continue;
+      }
+      const std::uint32_t c = *next;
+      strips_ += ++in_strip == 3;
+      if (in_strip > 2 && a != b && b != c && c != a) {
+        faces_.begin(data_.line());
+        for (const std::uint32_t v : in_strip % 2 == 1 ? Face{a, b, c} : Face{b, a, c}) faces_.corner(v);
+        ++strip_triangles_;
+      }
+      a = b, b = c;
+    }
   }
 
   const PlyHeader& header_;
   Data data_;
   RawMesh mesh_;
-  FaceFans fans_;
+  MeshFaces faces_;
+  bool in_strips_ = false;
+  std::uint64_t strips_ = 0, strip_triangles_ = 0;
+  std::vector<std::string> twice_;
   std::uint64_t vertex_count_ = 0, face_count_ = 0, faces_found_ = 0;
 };
 
@@ -248,12 +326,11 @@ void require(const PlyHeader& header, const std::string& name) {
       for (const char* c : {"x", "y", "z"})
         if (const PlyProperty* p = element.find(c); !p || p->is_list)
           refuse(element.line, "the vertices do not have x, y and z.");
-    } else if (element.name == "face" && element.count != 0) {
-      const auto list = std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
+    } else if ((element.name == "face" || element.name == "tristrips") && element.count != 0) {
+      const auto list = index_list(element);
       if (list == element.properties.end() || !list->is_list || is_real(list->type))
-        refuse(element.line, "the faces do not have a list of whole numbers vertex_indices (or vertex_index).");
-    } else if (element.name == "tristrips" && element.count != 0) {
-      refuse(element.line, "triangle strips ('tristrips') are not read. Export the mesh with faces.");
+        refuse(element.line, fmt::format("the {} do not have a list of whole numbers vertex_indices (or vertex_index).",
+                                         element.name == "face" ? "faces" : "triangle strips"));
     }
   }
   if (!vertices) refuse(header.lines, "there are no vertices.");

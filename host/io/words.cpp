@@ -53,16 +53,33 @@ std::string_view WordScanner::word_on_line() {
 std::string_view WordScanner::word_on_joined_lines() {
   for (;;) {
     skip_blanks();
-    if (at_ == end_ || *at_ != '\\' || at_ + 1 == end_ || !is_line_end(at_[1])) break;
-    ++at_;
+    if (at_ == end_ || *at_ != '\\' || !at_line_end(at_ + 1)) break;
+    skip_line();
     skip_line_end();
   }
   std::string_view word = take();
-  if (word.ends_with('\\') && at_ != end_ && is_line_end(*at_)) {
+  if (word.ends_with('\\') && at_line_end(at_)) {
     word.remove_suffix(1);
-    --at_; // the next call finds the backslash
+    at_ = word.data() + word.size(); // the next call finds the backslash
   }
   return word;
+}
+
+void WordScanner::skip_joined_lines() {
+  for (;;) {
+    const char* begin = at_;
+    skip_line();
+    std::string_view line(begin, static_cast<std::size_t>(at_ - begin));
+    while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+    if (at_ == end_ || !line.ends_with('\\') || (comment_ != '\0' && line.find(comment_) != std::string_view::npos))
+      return;
+    skip_line_end();
+  }
+}
+
+bool WordScanner::at_line_end(const char* at) const {
+  while (at != end_ && is_blank(*at)) ++at;
+  return at != end_ && is_line_end(*at);
 }
 
 void WordScanner::skip_line() {
@@ -75,7 +92,7 @@ void WordScanner::skip_blanks() {
 }
 
 void WordScanner::skip_line_end() {
-  if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
+  if (at_ + 1 != end_ && is_line_end(at_[1]) && at_[1] != *at_) ++at_;
   ++at_;
   ++line_;
 }

@@ -10,7 +10,7 @@ namespace cowgpu {
 /// `text` without a UTF-8 byte order mark.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// Cuts text into words and counts lines, which end with LF, CRLF or CR. A word ends at a blank, a line end or the
+/// Cuts text into words and counts lines, which end with LF, CRLF, LFCR or CR. A word ends at a blank, a line end or the
 /// comment character. A word's line is line() until the next call.
 class WordScanner {
 public:
@@ -28,11 +28,14 @@ public:
   /// The next word of this line; empty at the line's end.
   std::string_view word_on_line();
 
-  /// The same where a backslash right before a line's end joins the next line to this one (OBJ).
+  /// The same where a backslash before a line's end, and before blanks there, joins the next line to this one (OBJ).
   std::string_view word_on_joined_lines();
 
   /// To the line's end.
   void skip_line();
+
+  /// To the end of the last of the lines that backslashes join; none in a comment does.
+  void skip_joined_lines();
 
   /// Gives back the last `count` characters of the word just taken.
   void put_back(std::size_t count) { at_ -= count; }
@@ -40,6 +43,7 @@ public:
 private:
   void skip_blanks();
   void skip_line_end();
+  bool at_line_end(const char* at) const;
   std::string_view take();
 
   const char* begin_;
