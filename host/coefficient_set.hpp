@@ -56,6 +56,9 @@ struct CoefficientSet {
   std::vector<std::string> names;         ///< one a field, empty where there is none
   std::vector<std::string> units;         ///< the same; "length" and "radian" of surfaces
   std::optional<double> reference_radius; ///< R in the length unit; of multipoles and potentials
+  /// Radius of the sphere about `origin` that holds the body, in the length unit: outside it the series is the potential. It
+  /// says what R, which any number may be, does not. Empty: not known, as of files of other programs.
+  std::optional<double> brillouin_radius;
   std::optional<Vec3> origin;             ///< of multipoles, potentials and surfaces, in mesh coordinates
   std::string origin_kind;                ///< "centre of mass", "mesh", "given", or empty
   std::string length_unit, mass_unit;     ///< "m", "kg"; the two above; empty: not known

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace cowgpu::cli {
@@ -16,7 +17,7 @@ struct Options {
   std::string of, field;
   std::string kind, form, normalisation, phase;
   std::string input_normalisation, input_phase;
-  std::optional<double> reference_radius;
+  std::optional<double> reference_radius, brillouin_radius;
   std::optional<int> lmax;
   std::string rotation, angle_unit = "degrees";
   bool si = false;
@@ -72,11 +73,27 @@ void state_si(CoefficientSet& set) {
   if (set.kind == CoefficientKind::potential && set.mass) set.gm = *set.mass * gravitational_constant_si;
 }
 
+// The sphere that holds the body, where the file does not say it.
+void state_radius(double radius, const std::string& file, CoefficientSet& set) {
+  if (set.kind == CoefficientKind::field)
+    throw Error(Fault::bad_argument,
+                fmt::format("--brillouin-radius is of a body, and {} holds coefficients of other fields", file));
+  if (!(radius > 0) || !std::isfinite(radius))
+    throw Error(Fault::bad_argument, fmt::format("--brillouin-radius {}: it must be above 0", radius));
+  if (set.brillouin_radius && *set.brillouin_radius != radius)
+    throw Error(Fault::bad_argument,
+                fmt::format("--brillouin-radius {}: {} says that it is {}", radius, file, *set.brillouin_radius));
+  set.brillouin_radius = radius;
+}
+
 std::string described(const CoefficientSet& set) {
   std::string text =
       fmt::format("{} to degree {}, {}, {}", name(set.kind), set.lmax, name(set.form), convention_text(set.convention));
   if (set.fields > 1) text = fmt::format("{} fields: ", set.fields) + text;
   if (set.reference_radius) text += fmt::format(", R = {}", *set.reference_radius);
+  if (set.kind != CoefficientKind::field)
+    text += set.brillouin_radius ? fmt::format(", Brillouin radius = {}", *set.brillouin_radius)
+                                 : ", Brillouin radius not known";
   if (set.gm) text += fmt::format(", GM = {}", *set.gm);
   return text;
 }
@@ -91,6 +108,7 @@ void run(const Options& options, const Common& common) {
   const std::string before = described(set);
   state_convention(options, set);
   if (options.si) state_si(set);
+  if (options.brillouin_radius) state_radius(*options.brillouin_radius, options.input, set);
   if (!options.field.empty()) set = single_field(set, options.field);
   if (options.lmax && *options.lmax > set.lmax)
     throw Error(Fault::bad_argument, fmt::format("--lmax {}: {} goes to degree {}, and convert only leaves degrees out",
@@ -140,6 +158,12 @@ void add_convert(CLI::App& app, Common& common) {
                    "Of a body: multipoles (Q_lm / R^l) or potential (C_lm of geodesy; what .gfc and .sh hold)")
       ->check(CLI::IsMember({"multipoles", "potential"}));
   command->add_option("--reference-radius", options->reference_radius, "Of OUT, in the length unit of IN")
+      ->type_name("R")
+      ->check(not_empty());
+  command
+      ->add_option("--brillouin-radius", options->brillouin_radius,
+                   "Of IN, where it does not say it: the radius of the sphere about its origin that holds the body, in "
+                   "its length unit")
       ->type_name("R")
       ->check(not_empty());
   command

@@ -8,6 +8,7 @@
 #include "host/report/findings_report.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/verify.hpp"
+#include "host/units.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,11 +34,11 @@ constexpr std::array applications = {
                 "          cowgpu potential benchmark --sphere 1.5R --resolution 61 -o sphere.nc\n"
                 "          cowgpu potential benchmark --plane z,0,1,101 --inside exact -o plane.csv\n"
                 "          cowgpu potential benchmark --errors --plot errors.svg",
-                add_potential, true},
+                add_potential, true, true},
     Application{"radiate", "Gravitational waves from a body that turns: their power, and how long until it has stopped",
                 "Examples: cowgpu radiate benchmark --length 2.5m --density 1g/cm3 --axis y --omega 1rad/s\n"
                 "          cowgpu radiate benchmark --recipe paper",
-                add_radiate},
+                add_radiate, false, true},
     Application{
         "tides", "A body on a circular orbit: gravity-gradient torque, attitudes that last, librations, locking",
         "Examples: cowgpu tides benchmark --length 2.5m --density 1g/cm3 --orbit 6771km\n"
@@ -45,7 +46,7 @@ constexpr std::array applications = {
         "z:30\n"
         "          cowgpu tides cow.json --length-unit 2.4m --density 1g/cm3 --orbit 42164km --love 0.1 --quality 10 "
         "--spin 1rad/s",
-        add_tides},
+        add_tides, false, true},
     Application{
         "drop", "Whether a body that is dropped lands on its feet: its fall, turned by the gradient of gravity",
         "Examples: cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude upside-down\n"
@@ -90,6 +91,12 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
                                            command->get_option("mesh")->get_description());
   command->get_option("mesh")->type_name("MESH|COEFFS");
   const Solve solve = application.add(*command, common);
+  if (application.asks_radius)
+    command
+        ->add_option("--brillouin-radius", options->brillouin_radius,
+                     "Of coefficients that do not say it: the radius of the sphere about their origin that holds the "
+                     "body, in their coordinates; nothing is computed inside")
+        ->type_name("R");
   command
       ->add_option("--recipe", options->recipe,
                    "default, or paper: as Higher multipoles of the cow has it (benchmark, 2.39 m, 1 g/cm3), with its "
@@ -148,22 +155,56 @@ void restate_density(const PhysicsOptions& options, CoefficientSet& set) {
     if (*of_mass) **of_mass *= factor;
 }
 
+// What the user says of the sphere that holds a file's body.
+void state_radius(const PhysicsOptions& options, const StatedUnits& stated, CoefficientSet& set) {
+  const std::string& text = options.brillouin_radius;
+  if (text.empty()) return;
+  const Measure radius = parse_measure("--brillouin-radius", text, Dimension::length);
+  const bool metres = set.length_unit == "m";
+  if (radius.has_unit && !metres && !stated.metric)
+    throw Error(Fault::bad_argument, fmt::format("--brillouin-radius {}: a length with a unit needs that of the file: "
+                                                 "add --length-unit, or give a bare number in the file's unit",
+                                                 text));
+  if (!(radius.value > 0))
+    throw Error(Fault::bad_argument, fmt::format("--brillouin-radius {}: it must be above 0", text));
+  // The unit is stated for coordinates too, so that a bare number is in metres then.
+  const double value = metres || !stated.metric ? radius.value : radius.value / stated.metres;
+  if (set.brillouin_radius && std::abs(value - *set.brillouin_radius) > 1e-9 * value)
+    throw Error(Fault::bad_argument, fmt::format("--brillouin-radius {}: {} says that it is {}, in its unit of length",
+                                                 text, options.body.mesh, *set.brillouin_radius));
+  if (!set.brillouin_radius) set.brillouin_radius = value;
+}
+
 } // namespace
 
 PhysicsInput load_input(const PhysicsOptions& options) {
   const BodyOptions& body = options.body;
   PhysicsInput input;
   if (!is_coefficient_file(body.mesh)) {
+    if (!options.brillouin_radius.empty())
+      throw Error(
+          Fault::bad_argument,
+          fmt::format("--brillouin-radius is for coefficients that do not say it; that of {} is measured", body.mesh));
     input.body = load_body(body, input.notes);
     return input;
   }
-  stated_units(body);
+  const StatedUnits stated = stated_units(body);
   refuse_placing(body);
   input.coefficients = read_coefficient_set(body.mesh);
   input.notes = input.coefficients->notes;
   if (options.density_given && input.coefficients->kind != CoefficientKind::field)
     restate_density(options, *input.coefficients);
+  state_radius(options, stated, *input.coefficients);
   return input;
+}
+
+std::string unknown_radius_note(const PhysicsInput& input) {
+  if (input.body || input.coefficients->brillouin_radius) return "";
+  return fmt::format(
+      "the file does not say the radius of the sphere that holds its body, inside of which the series is "
+      "not the potential; its reference radius, {:.9g}, may be smaller or larger; --brillouin-radius "
+      "states it, and keeps places out of that sphere",
+      input.coefficients->reference_radius.value_or(0));
 }
 
 PhysicsInput load_free_body(const PhysicsOptions& options) {
@@ -245,6 +286,7 @@ PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& op
   const CoefficientSet& set = *input.coefficients;
   const StatedUnits stated = stated_units(options.body);
   placed.moments = physics::mass_moments(set, lmax);
+  placed.radius_known = set.brillouin_radius.has_value();
   placed.metric = set.length_unit == "m" && set.mass_unit == "kg";
   if (placed.metric && options.body.charge)
     throw Error(
@@ -257,6 +299,7 @@ PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& op
                 fmt::format("--length-unit: {} is in metres and kilograms already", options.body.mesh));
   if (placed.metric || !stated.metric) return placed;
   placed.metric = true;
+  placed.metres = stated.metres;
   placed.moments = physics::in_si(std::move(placed.moments), stated.metres, std::pow(stated.metres, 3));
   return placed;
 }

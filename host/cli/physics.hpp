@@ -18,6 +18,7 @@ namespace cowgpu::cli {
 struct PhysicsOptions {
   BodyOptions body; ///< body.mesh is MESH|COEFFS
   std::string recipe = "default";
+  std::string brillouin_radius; ///< of a file that does not say it, as typed
   bool json = false;
   bool density_given = false; ///< by --density or the recipe
   bool paper() const { return recipe == "paper"; }
@@ -61,12 +62,17 @@ physics::MassiveBody massive_body(const PhysicsInput& input, const PlacedTensors
 struct PlacedMoments {
   Coefficients moments;
   bool metric = false;
+  double metres = 1;        ///< that a file's unit of length was turned into
+  bool radius_known = true; ///< the moments are over the sphere that holds the body; else over the file's own radius
 };
 
 /// To degree `lmax`, or what a file holds of it. Throws Error(bad_argument) for --charge with a file in kilograms; what
 /// mass_moments() throws.
 PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& options, int lmax, Backend& backend,
                              Monitor& monitor);
+
+/// A sentence about a file that does not say the radius of the sphere that holds its body; empty for all other inputs.
+std::string unknown_radius_note(const PhysicsInput& input);
 
 /// Name, hash and notes of an input, for the head of a report.
 physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions& options);
@@ -85,6 +91,7 @@ struct Application {
   const char* footer;
   Solve (*add)(CLI::App& command, Common& common);
   bool paper_of_formulas = false; ///< what it lays beside the paper holds for every body
+  bool asks_radius = false;       ///< it takes --brillouin-radius for files that do not say it
 };
 
 Solve add_tensors(CLI::App& command, Common& common);

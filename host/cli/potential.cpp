@@ -1,22 +1,20 @@
 #include "host/cli/physics.hpp"
 
-#include "host/cli/order_list.hpp"
+#include "host/cli/potential_errors.hpp"
 #include "host/cli/potential_places.hpp"
 #include "host/error.hpp"
 #include "host/io/potential_file.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
-#include "host/report/potential_plot.hpp"
+#include "host/plot/plot.hpp"
 #include "host/report/result.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
 
 namespace cowgpu::cli {
 namespace {
@@ -59,33 +57,19 @@ Units units_of(bool metric, bool charge) {
   return units;
 }
 
-std::vector<double> parse_distances(const std::string& text) {
-  std::vector<double> distances;
-  std::istringstream words(text + ",");
-  for (std::string word; std::getline(words, word, ',');) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !(value >= 1) || !(value <= farthest_good))
-      throw Error(
-          Fault::bad_argument,
-          fmt::format("--distances {}: \"{}\" is none; they are numbers from 1 to {} between commas, in radii of "
-                      "the sphere that holds the body",
-                      text, word, farthest_good));
-    distances.push_back(value);
-  }
-  return distances;
-}
-
 // A body's field at its places, as `potential` needs it.
 struct Solved {
   Units units;
   PlaceFrame frame;
+  bool radius_known = true;    // of the sphere that holds the body
+  double reference_radius = 0; // of a file
   Places places;
   int lmax = 0;
   PotentialField field; // V; later in the units
   std::vector<std::uint8_t> exact;
-  std::vector<double> density; // where exact
-  std::size_t exact_points = 0;
+  std::vector<double> density;                              // where exact
+  std::size_t exact_points = 0, far_points = 0;             // by the polyhedron; where its series was better
+  double exact_error = 0;                                   // of both, estimated
   double nearest = std::numeric_limits<double>::infinity(); // point of the series, in radii
 };
 
@@ -116,21 +100,48 @@ std::vector<Vec3> chosen(const std::vector<Vec3>& points, const std::vector<std:
   return some;
 }
 
+// Where the sphere that holds the body is not known the sum of the file's terms is the field that it describes, below its
+// reference radius too, as on the ground of a planet. The moments, over the distance of the nearest point. Refuses places
+// where the terms grow with their degree, which no field does outside of its body.
+Coefficients continued_down(const Coefficients& moments, const Solved& s) {
+  std::size_t nearest = 0, below = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < s.places.points.size(); ++i) {
+    const double r = (s.places.points[i] - s.frame.origin).norm();
+    below += r < s.frame.radius ? 1 : 0;
+    if (r < least) nearest = i;
+    least = std::min(least, r);
+  }
+  if (below == 0) return moments;
+  const Vec3& p = s.places.points[nearest];
+  const std::string place = fmt::format("{}: point {} of {} ({:.6g}, {:.6g}, {:.6g}) is {:.6g} from the origin",
+                                        s.places.name, nearest + 1, s.places.points.size(), p[0], p[1], p[2], least);
+  if (!(least > 0)) throw Error(Fault::point_inside, place + ", where no series of multipoles is the potential");
+  if (const double times = term_growth(moments, s.lmax, least);
+      times > 1 && term_growth(moments, s.lmax, s.frame.radius) <= 1)
+    throw Error(Fault::point_inside,
+                fmt::format("{}, {:.3g} of the file's reference radius {:.6g}: there the terms of degrees {} to {} are "
+                            "up to {:.2g} times those below, so that the series does not converge, and the place is "
+                            "inside the body or close to it; move it outwards, or lower --order",
+                            place, least / s.frame.radius, s.frame.radius, s.lmax / 2 + 1, s.lmax, times));
+  return over_radius(moments, least);
+}
+
 void compute(const PhysicsInput& input, const Options& options, const Coefficients& moments, Backend& backend,
              unsigned threads, Monitor& monitor, Solved& s) {
   const auto derivatives = Derivatives(options.derivatives);
   const std::size_t count = s.places.points.size();
   std::vector<std::size_t> inside, outside;
   for (std::size_t i = 0; i < count; ++i) {
-    const double r = (s.places.points[i] - s.frame.origin).norm();
-    if (!(r < 1e150 * s.frame.radius))
+    const double r = (s.places.points[i] - s.frame.origin).stableNorm();
+    if (!std::isfinite(r) || (!options.exact && !(r < 1e150 * s.frame.radius)))
       throw Error(Fault::file_format,
-                  fmt::format("{}: point {} of {} is farther than 1e150 radii of the body, beyond what "
-                              "doubles hold of its field",
-                              s.places.name, i + 1, count));
+                  fmt::format("{}: point {} of {} is farther than {}, beyond what doubles hold of its field{}",
+                              s.places.name, i + 1, count, options.exact ? "any double" : "1e150 radii of the body",
+                              options.exact || !input.body ? "" : "; --exact goes farther"));
     // On the sphere itself, where a vertex may lie, the series does not converge either.
     const double nearest = options.inside == "exact" ? 1 + 1e-9 : nearest_potential;
-    const bool by_polyhedron = options.exact || !(r >= nearest * s.frame.radius);
+    const bool by_polyhedron = options.exact || (s.radius_known && !(r >= nearest * s.frame.radius));
     if (!by_polyhedron) s.nearest = std::min(s.nearest, r / s.frame.radius);
     (by_polyhedron ? inside : outside).push_back(i);
   }
@@ -138,16 +149,19 @@ void compute(const PhysicsInput& input, const Options& options, const Coefficien
   s.field.value.resize(count);
   if (derivatives != Derivatives::none) s.field.gradient.resize(count);
   if (derivatives == Derivatives::second) s.field.hessian.resize(count);
+  const Coefficients reach = s.radius_known ? moments : continued_down(moments, s);
   if (!outside.empty())
-    take(backend.potential({moments, chosen(s.places.points, outside, s.frame.origin), s.lmax, derivatives}, monitor),
+    take(backend.potential({reach, chosen(s.places.points, outside, s.frame.origin), s.lmax, derivatives}, monitor),
          outside, s.field);
-  s.exact_points = inside.size();
   if (inside.empty()) return;
   const std::vector<Vec3> points = chosen(s.places.points, inside, Vec3::Zero());
   ExactField exact = exact_field(*input.body, points, derivatives, threads, monitor);
   take(exact.field, inside, s.field);
   s.exact.assign(count, 0);
-  for (const std::size_t i : inside) s.exact[i] = 1;
+  for (std::size_t i = 0; i < inside.size(); ++i) s.exact[inside[i]] = exact.by_series[i] ? 0 : 1;
+  s.far_points = std::size_t(std::count(exact.by_series.begin(), exact.by_series.end(), 1));
+  s.exact_points = inside.size() - s.far_points;
+  s.exact_error = exact.error;
   s.density = std::move(exact.density);
 }
 
@@ -243,56 +257,47 @@ void check_options(const PhysicsOptions& common, const Options& options) {
   }
 }
 
-void add_errors(const SeriesErrors& errors, Findings& found) {
-  found.rows.push_back({"directions", "directions of each sphere", double(errors.directions)});
-  found.rows.push_back({"truth_from", "beyond, the truth is the series", errors.truth_from, "radii"});
-  found.rows.push_back({"truth_degree", "to degree", double(errors.truth_degree)});
-  found.rows.push_back({"truth_error", "which is there off the polyhedron by", errors.truth_error});
-  Table table{
-      "errors",
-      "relative errors of the series, by distance in Brillouin radii and order",
-      {{"distance"}, {"order"}, {"potential_max"}, {"potential_rms"}, {"acceleration_max"}, {"acceleration_rms"}},
-      {}};
-  for (const SeriesError& e : errors.rows)
-    table.rows.push_back(
-        {e.distance, double(e.order), e.potential_max, e.potential_rms, e.acceleration_max, e.acceleration_rms});
-  Table good{
-      "good_from",
-      "from which distance on, in Brillouin radii, an order is right to 1e-3, 1e-6 and 1e-9 everywhere, potential "
-      "and acceleration",
-      {{"order"}, {"1e-3"}, {"1e-6"}, {"1e-9"}},
-      {}};
-  for (const GoodFrom& g : errors.good_from) {
-    std::vector<Value> row = {double(g.order)};
-    for (const auto& distance : g.distance) row.push_back(distance ? Value(*distance) : Value());
-    good.rows.push_back(row);
+// Which places have the closed form, which its series, and what doubles do not hold.
+void add_exact_notes(const Options& options, const Solved& s, Findings& found) {
+  const std::size_t count = s.places.points.size(), closed = s.exact_points + s.far_points;
+  if (options.exact && s.far_points == 0)
+    found.notes.push_back("everywhere the exact potential of the polyhedron (Werner and Scheeres 1997)");
+  else if (!options.exact && closed > 0)
+    found.notes.push_back(
+        fmt::format("{} of {} points lie inside the sphere that holds the body: there the exact potential "
+                    "of the polyhedron (Werner and Scheeres 1997)",
+                    closed, count));
+  if (s.far_points > 0)
+    found.notes.push_back(fmt::format("at {} of {} points the closed form of the polyhedron (Werner and Scheeres "
+                                      "1997), a difference of large numbers "
+                                      "far away and beside thin bodies, has larger errors than the body's series to "
+                                      "degree {} about the middle of its "
+                                      "box, and that series was taken",
+                                      s.far_points, count, FarField::degree));
+  std::size_t lost = 0;
+  constexpr double least = std::numeric_limits<double>::min();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (s.field.value[i] == 0) continue;
+    const auto small = [](double component) { return std::abs(component) < least; };
+    const bool force = !s.field.gradient.empty() && !(s.field.gradient[i].cwiseAbs().maxCoeff() >= least);
+    const bool tensor =
+        !s.field.hessian.empty() && std::all_of(s.field.hessian[i].begin(), s.field.hessian[i].end(), small);
+    lost += force || tensor ? 1 : 0;
   }
-  found.tables = {std::move(table), std::move(good)};
+  if (lost > 0)
+    found.notes.push_back(fmt::format("at {} of {} points, far away, derivatives of the potential are smaller than "
+                                      "doubles hold in all their digits ({:.3g}), and may be shown as 0",
+                                      lost, count, least));
 }
 
-Findings solve_errors(const PhysicsInput& input, const PhysicsOptions& common, const Options& options, Backend& backend,
-                      unsigned threads, Monitor& monitor) {
-  const std::vector<int> orders = parse_orders(options.orders);
-  for (const int order : orders)
-    if (order > largest_potential_degree)
-      throw Error(Fault::bad_argument, fmt::format("--orders: {} is beyond {}, the largest degree of a potential",
-                                                   order, largest_potential_degree));
-  const std::vector<double> distances = parse_distances(options.distances);
-  const SeriesErrors errors = series_errors(*input.body, orders, distances, backend, threads, monitor);
-  Findings found = findings_about(input, common);
-  found.notes.push_back(fmt::format(
-      "the truth is the exact potential of the polyhedron (Werner and Scheeres 1997), beyond {} radii the series "
-      "to degree {}",
-      errors.truth_from, errors.truth_degree));
-  found.rows = {
-      {"origin", "origin", input.body->origin, std::string(input.body->placement.metric ? "m" : mesh_length_unit)},
-      {"brillouin_radius", "Brillouin radius", input.body->brillouin_radius,
-       std::string(input.body->placement.metric ? "m" : mesh_length_unit)}};
-  add_errors(errors, found);
-  for (const std::string& picture : options.plots)
-    plot::write_plot(series_errors_plot(errors, fmt::format("How good the multipoles of {} are", found.input_name)),
-                     picture);
-  return found;
+// What computed the points: the series on a device, the closed form and its series in 80-bit numbers.
+std::string computed_by(const Solved& s, const Backend& backend, unsigned threads) {
+  const std::size_t closed = s.exact_points + s.far_points;
+  const std::string extended =
+      fmt::format("CPU, 80-bit arithmetic, {} threads", threads ? threads : make_cpu_backend(0)->facts().threads);
+  if (closed == s.places.points.size()) return extended;
+  if (closed == 0) return device_line(backend.facts());
+  return fmt::format("series: {}; polyhedron: {}", device_line(backend.facts()), extended);
 }
 
 void add_head(const PhysicsInput& input, const Options& options, const Solved& s, bool metric, Findings& found) {
@@ -305,27 +310,38 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
     found.notes.push_back("densities are of charge: potential k Q/r, field -grad of it, away from positive charges");
   if (!input.body && !input.coefficients->origin)
     found.notes.push_back("the file does not say its origin: places are counted from it");
-  if (options.exact)
-    found.notes.push_back("everywhere the exact potential of the polyhedron (Werner and Scheeres 1997)");
-  else if (s.exact_points > 0)
-    found.notes.push_back(
-        fmt::format("{} of {} points lie inside the sphere that holds the body: there the exact potential "
-                    "of the polyhedron (Werner and Scheeres 1997)",
-                    s.exact_points, s.places.points.size()));
-  if (const double rest = std::pow(s.nearest, -(s.lmax + 1)); input.body && rest > 1e-4)
+  add_exact_notes(options, s, found);
+  if (const double rest = std::pow(s.nearest, -(s.lmax + 1)); s.radius_known && rest > 1e-4)
     found.notes.push_back(
         fmt::format("the nearest point of the series is {:.6g} radii away: to degree {} its terms have fallen "
-                    "to {:.2g} there at most; a higher --lmax, or --exact, is nearer to the truth",
-                    s.nearest, s.lmax, rest));
+                    "to {:.2g} there at most; {} is nearer to the truth",
+                    s.nearest, s.lmax, rest,
+                    input.body ? "a higher --lmax, or --exact," : "the mesh, with --exact or a higher --lmax,"));
+  if (!s.radius_known) {
+    found.notes.push_back(unknown_radius_note(input) +
+                          "; 1R is the reference radius here, and the sum of the file's terms is taken everywhere");
+    if (s.nearest < 1)
+      found.notes.push_back(fmt::format("the nearest point is {:.6g} reference radii from the origin: the field is "
+                                        "continued downwards to it, and terms of degree {} and their errors have "
+                                        "grown {:.3g} times",
+                                        s.nearest, s.lmax, std::pow(s.nearest, -(s.lmax + 1))));
+  }
   found.rows = {{"law", "law", std::string(options.charge ? "charge" : "gravity")},
                 {"constant", options.charge ? "Coulomb's constant" : "Newton's constant", s.units.law.constant,
                  metric ? (options.charge ? "N m^2/C^2" : "m^3/(kg s^2)") : ""},
                 {"lmax", "series to degree", options.exact ? Value() : Value(double(s.lmax))},
                 {"origin", "origin", s.frame.origin, s.units.length},
-                {"brillouin_radius", "Brillouin radius", s.frame.radius, s.units.length},
+                {"brillouin_radius", "Brillouin radius", s.radius_known ? Value(s.frame.radius) : Value(),
+                 s.units.length, "not known: the file does not say it"},
                 {"places", "places", s.places.name},
                 {"point_count", "points", double(s.places.points.size())},
                 {"exact_count", "of them by the polyhedron", double(s.exact_points)}};
+  if (s.exact_points + s.far_points > 0) {
+    found.rows.push_back({"far_count", "by its series, which is nearer there", double(s.far_points)});
+    found.rows.push_back({"exact_error", "estimated relative error of both", s.exact_error});
+  }
+  if (!input.body)
+    found.rows.push_back({"reference_radius", "reference radius of the file", s.reference_radius, s.units.length});
 }
 
 // The paper's formula has another factor before the moments.
@@ -358,16 +374,27 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
   if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
   const PhysicsInput input = load_input(own);
   std::string note;
-  const auto backend = open_backend(common, &note);
+  // The closed form is computed in 80-bit numbers, which no device has.
+  const bool on_device = !options.exact;
+  const auto backend = on_device ? open_backend(common, &note) : make_cpu_backend(common.threads);
+  if (!on_device && common.device != "auto" && common.device != "cpu")
+    note =
+        fmt::format("--device {} is not used: the closed form of the polyhedron is computed in 80-bit arithmetic, on "
+                    "the CPU",
+                    common.device);
   if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
   ConsoleMonitor monitor(common.style());
-  if (options.errors) return solve_errors(input, own, options, *backend, common.threads, monitor);
+  if (options.errors)
+    return series_errors_found(input, own, {options.orders, options.distances, options.plots}, *backend, common.threads,
+                               monitor);
 
   Solved s;
   s.lmax = options.exact ? 0 : degree_wanted(input, options);
   const PlacedMoments placed = placed_moments(input, own, s.lmax, *backend, monitor);
   s.units = units_of(placed.metric, options.charge);
   s.frame = {placed.moments.origin, placed.moments.reference_radius, placed.metric};
+  s.radius_known = placed.radius_known;
+  if (input.coefficients) s.reference_radius = *input.coefficients->reference_radius * placed.metres;
   const auto check_count = [&](std::size_t count) {
     MemoryNeed need = backend->potential_memory(count, s.lmax, Derivatives(options.derivatives));
     need.host += 64 * count + (options.output.empty() ? 0 : potential_file_bytes(count));
@@ -389,7 +416,7 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
     add_ranges(s, found);
     add_table(s, own.json, found);
   }
-  found.rows.push_back({"device", "device", device_line(backend->facts())});
+  found.rows.push_back({"device", "device", computed_by(s, *backend, common.threads)});
   if (own.paper()) found.paper = beside_paper();
   if (file) {
     const PotentialTable table{found.input_name, s.places.points, s.field,           s.exact,
@@ -414,7 +441,8 @@ Solve add_potential(CLI::App& command, Common& common) {
   command
       .add_option(
           "--sphere", options->places.sphere,
-          "A sphere about the origin, of radius R: a length, or 1.5R for multiples of the sphere that holds the body")
+          "A sphere about the origin, of radius R: a length, or 1.5R for multiples of the sphere that holds the body "
+          "(of the reference radius of a file that does not say it)")
       ->type_name("R");
   command.add_option("--resolution", options->places.resolution, "Rings of its Gauss-Legendre grid")
       ->check(CLI::Range(1, largest_grid_degree + 1))
@@ -441,7 +469,8 @@ Solve add_potential(CLI::App& command, Common& common) {
                   "Points inside the sphere that holds the body: refuse, or exact, the polyhedron's closed form")
       ->check(CLI::IsMember({"refuse", "exact"}))
       ->capture_default_str();
-  command.add_flag("--exact", options->exact, "The polyhedron's closed form everywhere");
+  command.add_flag("--exact", options->exact,
+                   "The polyhedron's closed form everywhere, or where it is nearer to the truth (far away) its series");
   command.add_flag("--charge", options->charge, "--density is one of charge (C/m3): volts, and volts a metre");
   command.add_flag("--errors", options->errors,
                    "Instead: relative errors of the series against the polyhedron, by distance and order");

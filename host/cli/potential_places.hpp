@@ -21,8 +21,8 @@ struct PlaceOptions {
 /// What a body's places are measured by.
 struct PlaceFrame {
   Vec3 origin = Vec3::Zero(); ///< in the body's coordinates
-  double radius = 1;          ///< of the sphere that holds it: 1R
-  bool metric = false;        ///< lengths may have units
+  double radius = 1;   ///< 1R: of the sphere that holds it; of a file that does not say that one, its reference radius
+  bool metric = false; ///< lengths may have units
 };
 
 struct Places {

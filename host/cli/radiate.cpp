@@ -89,15 +89,23 @@ double by_multipoles(const PhysicsInput& input, const MassTensors& tensors, cons
 }
 
 void check_speed(const Radiation& r, std::vector<std::string>& notes) {
-  const double speed = r.omega * r.tensors.radius;
+  // Of a body whose sphere is not known some matter is at least as far from the axis as the radius of gyration.
+  const bool known = r.tensors.radius_known;
+  const double radius = known ? r.tensors.radius : r.moment ? std::sqrt(*r.moment / r.tensors.mass) : 0;
+  const double speed = r.omega * radius;
   if (speed >= speed_of_light_si)
     throw Error(Fault::bad_argument,
                 fmt::format("at {} rad/s a body of {} m moves at {:.3g} m/s, faster than light: lower "
                             "--omega",
-                            r.omega, r.tensors.radius, speed));
+                            r.omega, radius, speed));
   if (speed >= 0.1 * speed_of_light_si)
     notes.push_back(fmt::format("the body moves at {:.2g} of the speed of light, and the formula is for slow ones",
                                 speed / speed_of_light_si));
+  else if (!known && r.omega * r.tensors.radius >= 0.1 * speed_of_light_si)
+    notes.push_back(fmt::format("the file does not say how large its body is; if it reaches its reference radius of "
+                                "{:.6g} m, it moves at {:.2g} of the speed of light, and the formula is for slow ones; "
+                                "--brillouin-radius states how large it is",
+                                r.tensors.radius, r.omega * r.tensors.radius / speed_of_light_si));
 }
 
 void check_wobble(const Eigen::Matrix3d& inertia, const Vec3& axis, std::vector<std::string>& notes) {

@@ -136,6 +136,9 @@ Tides read_tides(const PhysicsInput& input, const PhysicsOptions& common, const 
   t.body = massive_body(input, t.placed, order_of(input, t.placed, options.order, found.notes));
   t.principal = principal_axes(about_centre(t.placed.tensors));
   t.orbit = circular_orbit(t.centre, t.body, radius);
+  // Farther out the sphere of no body that the coefficients describe is in question.
+  if (const std::string note = unknown_radius_note(input); !note.empty() && radius < 10 * t.body.radius)
+    found.notes.push_back(note);
   if (radius < t.centre.radius)
     found.notes.push_back(
         fmt::format("an orbit of this radius runs inside the {}, which is taken for a point", t.centre.name));

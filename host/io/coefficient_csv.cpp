@@ -91,11 +91,13 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
   if (of.empty() || (of == "mass" && mass && set.fields == 1)) {
     if (mass && set.fields == 1) {
       set.kind = CoefficientKind::multipoles;
+      if (!set.brillouin_radius) set.brillouin_radius = set.reference_radius; // as tables that lack it refer to
       take_units(set, metadata);
     }
     if (mass && set.fields > 1) {
       if (set.reference_radius) set.notes.push_back(expansion_note(metadata.at("reference_radius").text));
       set.reference_radius.reset();
+      set.brillouin_radius.reset();
       set.origin.reset();
       set.density.reset();
     }
@@ -125,7 +127,7 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
   take_units(chosen, metadata);
   if (of == "mass") {
     chosen.kind = CoefficientKind::multipoles;
-    for (const char* key : {"reference_radius", "density", "origin"})
+    for (const char* key : {"reference_radius", "brillouin_radius", "density", "origin"})
       if (metadata.contains(key)) own[key] = metadata.at(key);
   } else {
     chosen.mass_unit.clear();
@@ -134,6 +136,7 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
       if (key.starts_with(of + "_removed_mean_")) chosen.remarks.emplace_back(key.substr(of.size() + 1), text.text);
   }
   take_metadata(own, table.name, chosen);
+  if (!chosen.brillouin_radius) chosen.brillouin_radius = chosen.reference_radius;
   set = std::move(chosen);
 }
 

@@ -21,8 +21,8 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 // Members of the document's top that are numbers, and those of its provenance.
-constexpr std::array number_words = {"reference_radius",       "density", "mass", "second_moment",
-                                     "gravitational_constant", "gm"};
+constexpr std::array number_words = {"reference_radius", "brillouin_radius",       "density", "mass",
+                                     "second_moment",    "gravitational_constant", "gm"};
 constexpr std::array provenance_words = {"program", "created", "command", "mesh", "mesh_sha256", "history"};
 constexpr std::array text_words = {"kind", "form", "normalisation", "phase", "length_unit", "mass_unit"};
 
@@ -148,6 +148,10 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
     set.kind = CoefficientKind::multipoles;
     set.mass_unit = metric ? "kg" : mesh_mass_unit;
     metadata["reference_radius"] = {number_text(result_json::number(name, expansion, "reference_radius")), 0};
+    // Files that lack it refer their moments to that sphere.
+    const bool stated = expansion.contains("brillouin_radius");
+    metadata["brillouin_radius"] = {
+        number_text(result_json::number(name, expansion, stated ? "brillouin_radius" : "reference_radius")), 0};
     if (expansion.contains("density"))
       metadata["density"] = {number_text(result_json::number(name, expansion, "density")), 0};
     set.second_moment = second_moment_in(name, all, expansion);
@@ -218,8 +222,9 @@ void write_json_coefficients(const CoefficientSet& set, AtomicFile& file) {
     if (key.starts_with("remark.")) remarks[key.substr(7)] = text;
     if (among(text_words, key)) head[key] = text;
   }
-  const std::array<std::optional<double>, 6> numbers = {
-      set.reference_radius, set.density, set.mass, set.second_moment, set.gravitational_constant, set.gm};
+  const std::array<std::optional<double>, 7> numbers = {
+      set.reference_radius, set.brillouin_radius,       set.density, set.mass,
+      set.second_moment,    set.gravitational_constant, set.gm};
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i]) head[number_words[i]] = *numbers[i];
   if (set.origin) {

@@ -141,6 +141,7 @@ std::vector<std::pair<std::string, std::string>> metadata_of(const CoefficientSe
   if (set.kind != CoefficientKind::field || set.form != Form::real) add("kind", std::string(name(set.kind)));
   if (set.form != Form::real) add("form", std::string(name(set.form)));
   add_number("reference_radius", set.reference_radius);
+  add_number("brillouin_radius", set.brillouin_radius);
   if (set.origin) {
     std::string text = set.origin_kind.empty() ? "" : "(" + set.origin_kind + ") ";
     for (int c = 0; c < 3; ++c) text += (c ? " " : "") + text_of((*set.origin)[c]);
@@ -191,6 +192,7 @@ bool take_metadata(const Metadata& metadata, const std::string& file, Coefficien
   read.word("kind", kind_named, "field, multipoles and potential", set.kind);
   read.word("form", form_named, "real and complex", set.form);
   read.number("reference_radius", set.reference_radius, true);
+  read.number("brillouin_radius", set.brillouin_radius, true);
   read.origin(set);
   read.text("length_unit", set.length_unit);
   read.text("mass_unit", set.mass_unit);

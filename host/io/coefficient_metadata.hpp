@@ -21,7 +21,7 @@ struct MetadataText {
 using Metadata = std::map<std::string, MetadataText>;
 
 /// Words and one-line texts in the order in which files have them: lmax, normalisation and phase always, then of
-///   kind, form, reference_radius, origin ("(kind) x y z"), length_unit, mass_unit, density, mass, second_moment,
+///   kind, form, reference_radius, brillouin_radius, origin ("(kind) x y z"), length_unit, mass_unit, density, mass, second_moment,
 ///   gravitational_constant, gm, fields, units (between commas), program, created, command, mesh, mesh_sha256, history, remark.WORD
 /// what there is. Numbers read back as the same doubles.
 std::vector<std::pair<std::string, std::string>> metadata_of(const CoefficientSet& set);

@@ -17,6 +17,7 @@ MassiveBody massive_body(const MassTensors& tensors, Coefficients moments, int o
   body.inertia = tensors.inertia();
   body.quadrupole = tensors.quadrupole;
   body.radius = tensors.radius;
+  body.radius_known = tensors.radius_known;
   body.order = order;
   check_weighs(tensors);
   if (order < 3) return body;

@@ -41,8 +41,9 @@ struct MassiveBody {
   double mass = 0;
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d quadrupole = Eigen::Matrix3d::Zero();
-  double radius = 0; ///< of the Brillouin sphere, which the point mass must be outside of
-  int order = 2;     ///< the last degree that counts
+  double radius = 0;        ///< of the Brillouin sphere, which the point mass must be outside of; as in MassTensors
+  bool radius_known = true; ///< the same
+  int order = 2;            ///< the last degree that counts
   std::shared_ptr<const reference::ExteriorPotential<long double>> higher; ///< of degrees 3 to `order`; null where 2
 };
 

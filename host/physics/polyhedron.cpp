@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace cowgpu::physics {
 namespace {
@@ -41,6 +42,7 @@ Polyhedron::Polyhedron(std::span<const Vec3> vertices, std::span<const Face> fac
   struct Half {
     std::uint32_t low, high;
     LongMatrix3 dyad;
+    Real rounding;
   };
   std::vector<Half> halves;
   halves.reserve(3 * faces.size());
@@ -50,21 +52,26 @@ Polyhedron::Polyhedron(std::span<const Vec3> vertices, std::span<const Face> fac
     const Real norm = area.norm();
     if (!(norm > 0)) continue; // a face without area has no gravity
     const LongVec3 normal = area / norm;
+    // Of the cross product, whose parts cancel in needles.
+    const Real rounding = 1 + (b - a).norm() * (c - a).norm() / norm;
     sides_.push_back({face, normal, norm});
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t from = face[k], to = face[(k + 1) % 3];
       const LongVec3 outward = (vertices_[to] - vertices_[from]).normalized().cross(normal);
-      halves.push_back({std::min(from, to), std::max(from, to), normal * outward.transpose()});
+      halves.push_back({std::min(from, to), std::max(from, to), normal * outward.transpose(), rounding});
     }
   }
   std::stable_sort(halves.begin(), halves.end(),
                    [](const Half& a, const Half& b) { return std::pair(a.low, a.high) < std::pair(b.low, b.high); });
   for (std::size_t i = 0; i < halves.size();) {
     const LongVec3 along = vertices_[halves[i].high] - vertices_[halves[i].low];
-    Edge edge{halves[i].low, halves[i].high, along.norm(), along.normalized(), LongMatrix3::Zero(), false};
-    for (; i < halves.size() && halves[i].low == edge.from && halves[i].high == edge.to; ++i)
+    Edge edge{halves[i].low, halves[i].high, along.norm(), along.normalized(), LongMatrix3::Zero(), false, 0};
+    for (; i < halves.size() && halves[i].low == edge.from && halves[i].high == edge.to; ++i) {
       edge.dyad += halves[i].dyad;
+      edge.rounding = std::hypot(edge.rounding, halves[i].rounding);
+    }
     edge.flat = edge.dyad.norm() < 1e-13L;
+    spread_ = std::hypot(spread_, edge.rounding * edge.length);
     edges_.push_back(edge);
   }
 }
@@ -121,12 +128,74 @@ PolyhedronAt Polyhedron::at(const Vec3& point) const {
   return at(point.cast<Real>(), scratch);
 }
 
+FieldError Polyhedron::rounding(Real reach) const {
+  const Real unit = std::numeric_limits<Real>::epsilon() * spread_;
+  return {unit * reach, unit, unit / reach};
+}
+
+namespace {
+
+struct Piece {
+  Polyhedron polyhedron;
+  Real density;
+};
+
+FieldError rounding(const std::vector<Piece>& pieces, Real reach) {
+  FieldError sum;
+  for (const Piece& piece : pieces) {
+    const FieldError error = piece.polyhedron.rounding(reach);
+    sum.value += std::fabs(piece.density) * error.value;
+    sum.gradient += std::fabs(piece.density) * error.gradient;
+    sum.hessian += std::fabs(piece.density) * error.hessian;
+  }
+  return sum;
+}
+
+[[noreturn]] void refuse_edge(const Vec3& p) {
+  throw Error(Fault::point_singular,
+              fmt::format("the point ({}, {}, {}) lies on an edge of the body, where the second derivatives of its "
+                          "potential are infinite; move it, or ask for potential and acceleration alone "
+                          "(--derivatives 1)",
+                          p[0], p[1], p[2]));
+}
+
+PolyhedronAt by_polyhedron(const std::vector<Piece>& pieces, const Vec3& point, Polyhedron::Scratch& room) {
+  PolyhedronAt sum;
+  for (const Piece& piece : pieces) {
+    const PolyhedronAt at = piece.polyhedron.at(point.cast<Real>(), room);
+    sum.value += piece.density * at.value;
+    sum.gradient += piece.density * at.gradient;
+    sum.hessian += piece.density * at.hessian;
+    sum.winding += piece.density * at.winding;
+    sum.on_edge = sum.on_edge || at.on_edge;
+  }
+  return sum;
+}
+
+PolyhedronAt by_series(const FarField& far, const Vec3& point) {
+  const auto at = far.at(point.cast<Real>());
+  PolyhedronAt sum;
+  sum.value = at.value;
+  sum.gradient = at.gradient;
+  sum.hessian = at.hessian;
+  return sum;
+}
+
+// The worse of the relative errors of value and gradient.
+double relative_error(const PolyhedronAt& at, const FieldError& error, Real distance, Derivatives derivatives) {
+  constexpr Real rounded = std::numeric_limits<double>::epsilon() / 2;
+  const Real value = std::fabs(at.value);
+  const auto part = [](Real a, Real b) { return a == 0 ? 0 : a / b; };
+  Real worst = part(error.value, value);
+  if (derivatives != Derivatives::none)
+    worst = std::max(worst, part(error.gradient, std::max(at.gradient.norm(), value / distance)));
+  return double(worst + rounded);
+}
+
+} // namespace
+
 ExactField exact_field(const Body& body, std::span<const Vec3> points, Derivatives derivatives, unsigned threads,
                        Monitor& monitor) {
-  struct Piece {
-    Polyhedron polyhedron;
-    Real density;
-  };
   std::vector<Piece> pieces;
   pieces.push_back({Polyhedron(body.surface.vertices(), body.surface.faces()), body.density});
   for (const Part& part : body.parts)
@@ -134,36 +203,47 @@ ExactField exact_field(const Body& body, std::span<const Vec3> points, Derivativ
   const std::size_t count = points.size();
   ExactField found;
   found.density.resize(count);
+  found.by_series.resize(count);
   found.field.value.resize(count);
   if (derivatives != Derivatives::none) found.field.gradient.resize(count);
   if (derivatives == Derivatives::second) found.field.hessian.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
+  const Middle about = middle(body);
+  std::vector<Real> distances(count);
+  bool far_ones = false;
+  const Real mass = std::fabs(Real(body.mass()));
+  for (std::size_t i = 0; i < count; ++i) {
     if (!points[i].allFinite()) throw Error(Fault::bad_argument, "a point is not finite");
+    const Real d = distances[i] = (points[i].cast<Real>() - about.centre.cast<Real>()).norm();
+    // Where the closed form is right to doubles no series is needed.
+    far_ones = far_ones || (d > about.radius && rounding(pieces, d + about.radius).value * d >
+                                                    std::numeric_limits<double>::epsilon() / 4 * mass);
+  }
+  std::optional<FarField> far;
+  if (far_ones) far.emplace(body, monitor);
   if (threads == 0) threads = all_threads();
   std::vector<Polyhedron::Scratch> scratch(threads);
+  std::vector<double> errors(threads);
   std::atomic<std::size_t> done = 0;
-  const auto one = [&](std::size_t i, Polyhedron::Scratch& room) {
-    PolyhedronAt sum;
-    for (const Piece& piece : pieces) {
-      const PolyhedronAt at = piece.polyhedron.at(points[i].cast<Real>(), room);
-      sum.value += piece.density * at.value;
-      sum.gradient += piece.density * at.gradient;
-      sum.hessian += piece.density * at.hessian;
-      sum.winding += piece.density * at.winding;
-      sum.on_edge = sum.on_edge || at.on_edge;
+  const auto one = [&](std::size_t i, unsigned thread) {
+    const Real d = distances[i];
+    FieldError error = rounding(pieces, d + about.radius);
+    if (far && d > about.radius) {
+      const FieldError series = far->error(d);
+      found.by_series[i] = series.value < error.value &&
+                           (derivatives == Derivatives::none || series.gradient < error.gradient) &&
+                           (derivatives != Derivatives::second || series.hessian < error.hessian);
+      if (found.by_series[i]) error = series;
     }
-    if (sum.on_edge && derivatives == Derivatives::second)
-      throw Error(Fault::point_singular,
-                  fmt::format("the point ({}, {}, {}) lies on an edge of the body, where the second derivatives of its "
-                              "potential are infinite; move it, or ask for potential and acceleration alone "
-                              "(--derivatives 1)",
-                              points[i][0], points[i][1], points[i][2]));
-    found.density[i] = double(sum.winding);
-    found.field.value[i] = double(sum.value);
+    const PolyhedronAt at =
+        found.by_series[i] ? by_series(*far, points[i]) : by_polyhedron(pieces, points[i], scratch[thread]);
+    if (at.on_edge && derivatives == Derivatives::second) refuse_edge(points[i]);
+    errors[thread] = std::max(errors[thread], relative_error(at, error, std::max<Real>(d, about.radius), derivatives));
+    found.density[i] = double(at.winding);
+    found.field.value[i] = double(at.value);
     if (derivatives == Derivatives::none) return;
-    found.field.gradient[i] = sum.gradient.cast<double>();
+    found.field.gradient[i] = at.gradient.cast<double>();
     if (derivatives == Derivatives::first) return;
-    const auto& h = sum.hessian;
+    const auto& h = at.hessian;
     found.field.hessian[i] = {double(h(0, 0)), double(h(0, 1)), double(h(0, 2)),
                               double(h(1, 1)), double(h(1, 2)), double(h(2, 2))};
   };
@@ -171,11 +251,12 @@ ExactField exact_field(const Body& body, std::span<const Vec3> points, Derivativ
     const std::size_t end = std::min(count, (task + 1) * points_per_task);
     for (std::size_t i = task * points_per_task; i < end; ++i) {
       check_stop(monitor);
-      one(i, scratch[thread]);
+      one(i, thread);
       const std::size_t now = ++done;
       if (thread == 0) monitor.progress("exact potential", double(now) / double(count));
     }
   });
+  found.error = *std::max_element(errors.begin(), errors.end());
   return found;
 }
 

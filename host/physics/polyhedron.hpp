@@ -3,6 +3,7 @@
 
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
+#include "host/physics/far_field.hpp"
 #include "host/potential.hpp"
 #include "host/types.hpp"
 
@@ -50,13 +51,20 @@ public:
   PolyhedronAt at(const LongVec3& point, Scratch& scratch) const;
   PolyhedronAt at(const Vec3& point) const;
 
+  /// Rounding of at() at points no farther than `reach` from each vertex: every edge adds r E r L_e/2 ~ reach e/2 and E r L_e ~ e,
+  /// right to some units in the last place of an 80-bit number (more where the normals at the edge are those of needles),
+  /// whose errors add like those of a random walk. On bodies of size e V is about e^3/reach, so that of V a part of
+  /// (reach/e)^2 units is lost.
+  FieldError rounding(long double reach) const;
+
 private:
   struct Edge {
     std::uint32_t from, to;
     long double length;
     LongVec3 direction;
     LongMatrix3 dyad;
-    bool flat; // its dyad is zero but for rounding
+    bool flat;            // its dyad is zero but for rounding
+    long double rounding; // of the dyad, in units of the last place
   };
   struct Side {
     std::array<std::uint32_t, 3> corners;
@@ -69,17 +77,24 @@ private:
   std::vector<LongVec3> vertices_;
   std::vector<Edge> edges_;
   std::vector<Side> sides_;
-  long double size_ = 0; // largest coordinate
+  long double size_ = 0;   // largest coordinate
+  long double spread_ = 0; // root of the sum of (rounding times length)^2 of the edges
 };
 
 /// A body's field at many points.
 struct ExactField {
   PotentialField field;        ///< V = integral of density/|x - p| and what else was asked for
   std::vector<double> density; ///< that the body has at each point: -(trace of dd V)/4 pi; on a face the mean
+  /// 1 where the series of FarField has the smaller error, and was taken: far away, and beside very thin bodies.
+  std::vector<std::uint8_t> by_series;
+  /// Largest estimated error, of V by |V| and of the gradient by the larger of its norm and |V| over the distance from the
+  /// body's middle; at least the rounding of the doubles it is given in.
+  double error = 0;
 };
 
-/// At points in mesh coordinates, the body's parts added with their densities, on `threads` threads (0: all). Throws
-/// Error(point_singular) where second derivatives are asked for on an edge, bad_argument for points that are not finite,
+/// At points in mesh coordinates, the body's parts added with their densities, on `threads` threads (0: all); each point by
+/// the closed form or by the series, whichever is estimated to be nearer to the truth. What is smaller than doubles hold is
+/// 0. Throws Error(point_singular) where second derivatives are asked for on an edge, bad_argument for points that are not finite,
 /// interrupted.
 ExactField exact_field(const Body& body, std::span<const Vec3> points, Derivatives derivatives, unsigned threads,
                        Monitor& monitor);

@@ -98,7 +98,8 @@ MassTensors mass_tensors(const CoefficientSet& set) {
   result.trace = set.second_moment;
   result.origin = set.origin;
   result.origin_kind = set.origin_kind;
-  result.radius = r;
+  result.radius = set.brillouin_radius.value_or(r);
+  result.radius_known = set.brillouin_radius.has_value();
   if (!set.length_unit.empty()) result.length_unit = set.length_unit;
   if (!set.mass_unit.empty()) result.mass_unit = set.mass_unit;
   return result;

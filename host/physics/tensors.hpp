@@ -16,12 +16,13 @@ namespace cowgpu::physics {
 /// About `origin`, in the body's axes.
 struct MassTensors {
   double mass = 0;
-  Vec3 first_moment = Vec3::Zero();                        ///< integral of density x, x from the origin
-  Eigen::Matrix3d quadrupole = Eigen::Matrix3d::Zero();    ///< integral of density (3 x_i x_j - r^2 delta_ij)
-  std::optional<double> trace;                             ///< integral of density r^2; coefficients may lack it
-  std::optional<Vec3> origin;                              ///< in mesh coordinates
-  std::string origin_kind;                                 ///< "centre of mass", "mesh", "given", or empty
-  double radius = 0;                                       ///< of a sphere about the origin that holds the body
+  Vec3 first_moment = Vec3::Zero();                     ///< integral of density x, x from the origin
+  Eigen::Matrix3d quadrupole = Eigen::Matrix3d::Zero(); ///< integral of density (3 x_i x_j - r^2 delta_ij)
+  std::optional<double> trace;                          ///< integral of density r^2; coefficients may lack it
+  std::optional<Vec3> origin;                           ///< in mesh coordinates
+  std::string origin_kind;                              ///< "centre of mass", "mesh", "given", or empty
+  double radius = 0;        ///< of a sphere about the origin that holds the body; where not known the reference radius,
+  bool radius_known = true; ///< which says how large the body may be, and no more
   std::string length_unit = std::string(mesh_length_unit); ///< "m" where metric
   std::string mass_unit = std::string(mesh_mass_unit);     ///< "kg" where metric
 

@@ -52,7 +52,7 @@ bool is_isotropic(const PrincipalAxes& principal) {
 Orbit circular_orbit(const PointMass& centre, const MassiveBody& body, double radius) {
   check_positive("mass at the centre of the orbit", centre.gm);
   check_positive("radius of the orbit", radius);
-  if (radius <= body.radius)
+  if (body.radius_known && radius <= body.radius)
     throw Error(Fault::point_inside,
                 fmt::format("the orbit of radius {} m runs inside the sphere of radius {} m about the body's centre of "
                             "mass that holds the body: its multipoles say nothing there; give a larger --orbit",

@@ -23,7 +23,7 @@ struct Orbit {
 };
 
 /// Throws Error(bad_argument) for a mass or a radius that is not above 0 and finite, point_inside for a radius inside the body's
-/// Brillouin sphere.
+/// Brillouin sphere, where that is known.
 Orbit circular_orbit(const PointMass& centre, const MassiveBody& body, double radius);
 
 /// How a motionless attitude in the orbit frame fares after a small disturbance.

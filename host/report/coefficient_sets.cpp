@@ -37,6 +37,7 @@ CoefficientSet mass_set(const ExpandResult& result) {
     }
   set.names = {"mass"};
   set.reference_radius = q.reference_radius;
+  set.brillouin_radius = result.body.brillouin_radius;
   set.origin = q.origin;
   set.origin_kind = result.body.origin_kind;
   if (result.body.parts.empty()) set.density = q.density;

@@ -26,6 +26,8 @@ std::string mass_comments(const ExpandResult& result) {
       "# theta from +z, phi from +x towards +y, axes of the mesh; Q_l,-m = (-1)^m conj Q_lm\n";
   text += "# lmax " + std::to_string(q.lmax) + "\n# reference_radius ";
   append_number(text, q.reference_radius);
+  text += "\n# brillouin_radius ";
+  append_number(text, result.body.brillouin_radius);
   text += "\n# density ";
   append_number(text, q.density);
   text += "\n# second_moment ";

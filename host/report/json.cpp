@@ -123,6 +123,7 @@ void write_mass(const ExpandResult& result, const Sink& sink) {
       {"origin", json_of(result.mass.origin)},
       {"origin_kind", result.body.origin_kind},
       {"reference_radius", result.mass.reference_radius},
+      {"brillouin_radius", result.body.brillouin_radius},
       {"normalisation", "orthonormal"},
       {"condon_shortley", true},
       {"conjugated", false},

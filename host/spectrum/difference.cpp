@@ -56,6 +56,7 @@ std::vector<std::string> unlike(const CoefficientSet& a, const CoefficientSet& b
   compare("normalisation", name(a.convention.normalisation), name(b.convention.normalisation));
   compare("phase", name(a.convention.phase), name(b.convention.phase));
   compare("reference radius", a.reference_radius, b.reference_radius);
+  compare("Brillouin radius", a.brillouin_radius, b.brillouin_radius);
   compare("length unit", a.length_unit, b.length_unit);
   compare("mass unit", a.mass_unit, b.mass_unit);
   compare("density", a.density, b.density);
