@@ -31,7 +31,7 @@ std::string mass_comments(const ExpandResult& result) {
   text += "\n# density ";
   append_number(text, q.density);
   text += "\n# second_moment ";
-  append_number(text, result.tensors.second_moment.trace());
+  append_number(text, second_moment_of(result));
   text += "\n";
   const ErrorEstimate& estimate = result.accuracy.estimate;
   for (const std::string& sentence : sentences(estimate)) text += "# accuracy: " + sentence + "\n";
