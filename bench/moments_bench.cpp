@@ -13,7 +13,7 @@
 #include "host/reference/moments.hpp"
 #include "host/spectrum/compare.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -4,6 +4,7 @@
 #include "host/cli/potential_places.hpp"
 #include "host/error.hpp"
 #include "host/io/potential_file.hpp"
+#include "host/number.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/report/potential_plot.hpp"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -63,15 +63,14 @@ std::vector<double> parse_distances(const std::string& text) {
   std::vector<double> distances;
   std::istringstream words(text + ",");
   for (std::string word; std::getline(words, word, ',');) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !(value >= 1) || !(value <= farthest_good))
+    const auto value = read_number(word);
+    if (!value || !(*value >= 1) || !(*value <= farthest_good))
       throw Error(
           Fault::bad_argument,
           fmt::format("--distances {}: \"{}\" is none; they are numbers from 1 to {} between commas, in radii of "
                       "the sphere that holds the body",
                       text, word, farthest_good));
-    distances.push_back(value);
+    distances.push_back(*value);
   }
   return distances;
 }
@@ -238,7 +237,7 @@ void check_options(const PhysicsOptions& common, const Options& options) {
   std::vector<std::string> outputs = options.plots;
   if (!options.output.empty()) outputs.push_back(options.output);
   for (const std::string& output : outputs) {
-    for (const std::string& name : input_files(common.body)) refuse_same_file(name, output);
+    for (const std::string& name : input_files(common.body)) refuse_mesh_as_output(name, output);
     refuse_same_file(options.places.at, output);
   }
 }
@@ -417,7 +416,7 @@ Solve add_potential(CLI::App& command, Common& common) {
           "A sphere about the origin, of radius R: a length, or 1.5R for multiples of the sphere that holds the body")
       ->type_name("R");
   command.add_option("--resolution", options->places.resolution, "Rings of its Gauss-Legendre grid")
-      ->check(CLI::Range(1, largest_grid_degree + 1))
+      ->check(in_range(1, largest_grid_degree + 1))
       ->capture_default_str()
       ->type_name("N");
   command
@@ -428,12 +427,12 @@ Solve add_potential(CLI::App& command, Common& common) {
   command
       .add_option("--order,--lmax", options->lmax,
                   fmt::format("Degree that the series goes to (default {}, of a file all it has)", usual_degree))
-      ->check(CLI::Range(0, largest_potential_degree))
+      ->check(in_range(0, largest_potential_degree))
       ->type_name("L");
   command
       .add_option("--derivatives", options->derivatives,
                   "0 potential, 1 acceleration too, 2 the acceleration's gradient too")
-      ->check(CLI::Range(0, 2))
+      ->check(in_range(0, 2))
       ->capture_default_str()
       ->type_name("N");
   command

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <string>
+#include <vector>
 
 namespace cowgpu::cli {
 
@@ -19,6 +20,10 @@ Measure parse_quantity(const std::string& option, const std::string& text, Dimen
 
 /// The same where it must also be above 0.
 double parse_positive(const std::string& option, const std::string& text, Dimension dimension, const char* example);
+
+/// Adds to the notes what the text's unit stands for, where that is not the same everywhere: R_earth.
+void note_unit(const std::string& option, const std::string& text, Dimension dimension,
+               std::vector<std::string>& notes);
 
 /// "ALPHA,BETA,GAMMA" in degrees as R_z(ALPHA) R_y(BETA) R_z(GAMMA); multiples of 90 are exact. Throws Error(bad_argument).
 Eigen::Matrix3d parse_rotation(const std::string& option, const std::string& text);

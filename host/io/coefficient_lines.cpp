@@ -1,4 +1,5 @@
 #include "host/io/coefficient_lines.hpp"
+#include "host/number.hpp"
 
 #include "host/io/coefficient_metadata.hpp"
 #include "host/io/shown.hpp"
@@ -6,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace cowgpu {
@@ -31,27 +31,20 @@ bool WordLines::next() {
 }
 
 double WordLines::real(std::string_view word) const {
-  std::string text(word.substr(word.starts_with('+')));
+  std::string text(word);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::result_out_of_range)
-    fail(Fault::file_syntax, fmt::format("'{}' has no place in a double", shown(word)));
-  if (error != std::errc() || end != text.data() + text.size() || text.empty())
-    fail(Fault::file_syntax, fmt::format("a number expected, found '{}'", shown(word)));
-  if (!std::isfinite(value))
-    fail(Fault::file_syntax, fmt::format("'{}': every value must be a finite number", shown(word)));
-  return value;
+  const auto value = read_number(text);
+  if (!value) fail(Fault::file_syntax, fmt::format("a number expected; '{}' {}", shown(word), not_a_number(text)));
+  return *value;
 }
 
 int WordLines::whole(std::string_view word, const char* what, int largest) const {
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < 0 || value > largest)
+  const auto value = read_whole(word, 0, largest);
+  if (!value)
     fail(Fault::file_syntax,
          fmt::format("{} is '{}'; whole numbers from 0 to {} are possible", what, shown(word), largest));
-  return value;
+  return *value;
 }
 
 void WordLines::judge_end(bool ours, std::vector<std::string>& notes) const {

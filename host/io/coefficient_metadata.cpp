@@ -3,11 +3,11 @@
 #include "host/error.hpp"
 #include "host/io/number.hpp"
 #include "host/io/shown.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace cowgpu {
@@ -63,11 +63,9 @@ public:
     if (const MetadataText* at = find(key)) into = at->text;
   }
   double number(const std::string& key, const MetadataText& at, std::string_view word) const {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      fail(at, fmt::format("{} is '{}', and that is no finite number", key, shown(word)));
-    return value;
+    const auto value = read_number(word);
+    if (!value) fail(at, fmt::format("{} is '{}', and that is no finite number", key, shown(word)));
+    return *value;
   }
   void number(const std::string& key, std::optional<double>& into, bool positive) const {
     const MetadataText* at = find(key);

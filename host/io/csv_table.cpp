@@ -2,12 +2,11 @@
 
 #include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
 
 namespace cowgpu {
@@ -43,15 +42,11 @@ void read_row(CsvTable& table, std::string_view line, std::size_t number) {
   for (;; ++found) {
     const auto comma = line.find(',');
     const std::string_view word = trimmed(line.substr(0, comma));
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data() + word.starts_with('+'), word.data() + word.size(), value);
-    if (error == std::errc::result_out_of_range)
-      table.fail(Fault::file_syntax, number, fmt::format("'{}' has no place in a double", shown(word)));
-    if (error != std::errc() || end != word.data() + word.size() || word.empty())
-      table.fail(Fault::file_syntax, number, fmt::format("a number expected, found '{}'", shown(word)));
-    if (!std::isfinite(value))
-      table.fail(Fault::file_syntax, number, fmt::format("'{}': every value must be a finite number", shown(word)));
-    if (found < table.columns.size()) table.values.push_back(value);
+    const auto value = read_number(word);
+    if (!value)
+      table.fail(Fault::file_syntax, number,
+                 fmt::format("a finite number expected; '{}' {}", shown(word), not_a_number(word)));
+    if (found < table.columns.size()) table.values.push_back(*value);
     if (comma == std::string_view::npos) break;
     line.remove_prefix(comma + 1);
   }
@@ -80,12 +75,11 @@ const CsvTable::Attribute& CsvTable::attribute(const std::string& key) const {
 
 int CsvTable::integer(const std::string& key, int smallest, int largest) const {
   const Attribute& a = attribute(key);
-  int value = 0;
-  const auto [end, error] = std::from_chars(a.text.data(), a.text.data() + a.text.size(), value);
-  if (error != std::errc() || end != a.text.data() + a.text.size() || value < smallest || value > largest)
+  const auto value = read_whole(a.text, smallest, largest);
+  if (!value)
     fail(Fault::file_syntax, a.line,
          fmt::format("{} is '{}'; from {} to {} are possible", key, shown(a.text), smallest, largest));
-  return value;
+  return *value;
 }
 
 CsvTable read_csv(const std::filesystem::path& path) {
