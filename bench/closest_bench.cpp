@@ -12,7 +12,7 @@
 #include "host/reference/closest.hpp"
 #include "tests/support/cgal_distance.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 #include <Eigen/Geometry>
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -9,7 +9,7 @@
 #include "host/mesh/triangle_surface.hpp"
 #include "host/spectrum/surface_distance.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 

@@ -14,7 +14,7 @@
 #include "host/spectrum/expand_surface.hpp"
 #include "host/spectrum/paper_tables.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 
 #include <algorithm>
 #include <ctime>

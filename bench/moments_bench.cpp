@@ -13,7 +13,7 @@
 #include "host/reference/moments.hpp"
 #include "tests/support/bound_errors.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -6,7 +6,7 @@
 #include "host/parallel.hpp"
 #include "host/reference/potential.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>

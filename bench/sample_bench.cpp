@@ -7,7 +7,7 @@
 #include "host/reference/sample.hpp"
 #include "tests/support/mapped_meshes.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>

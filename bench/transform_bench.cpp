@@ -7,7 +7,7 @@
 #include "host/spectrum/roundtrip.hpp"
 #include "tests/support/libsharp.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,10 +1,10 @@
 #include "host/render.hpp"
 
 #include "host/error.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -56,14 +56,11 @@ std::string view_names() {
 View parse_view(std::string_view text) {
   for (const NamedView& known : named_views)
     if (known.name == text) return known.view;
-  View view;
-  const char *at = text.data(), *const end = at + text.size();
-  const auto azimuth = std::from_chars(at, end, view.azimuth);
-  if (azimuth.ec == std::errc() && azimuth.ptr != end && *azimuth.ptr == ',') {
-    const auto elevation = std::from_chars(azimuth.ptr + 1, end, view.elevation);
-    if (elevation.ec == std::errc() && elevation.ptr == end && std::abs(view.azimuth) <= 360 &&
-        std::abs(view.elevation) <= 90)
-      return view;
+  if (const auto angles = read_numbers<2>(text)) {
+    View view;
+    view.azimuth = (*angles)[0];
+    view.elevation = (*angles)[1];
+    if (std::abs(view.azimuth) <= 360 && std::abs(view.elevation) <= 90) return view;
   }
   throw Error(
       Fault::bad_argument,

@@ -1,10 +1,10 @@
 #include "host/units.hpp"
 
 #include "host/error.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -79,20 +79,30 @@ Measure parse_measure(std::string_view option, std::string_view text, Dimension 
     return Error(Fault::bad_argument, fmt::format("{} {}: {}; it is a number with or without a unit of {}", option,
                                                   text, why, names(dimension)));
   };
-  const std::size_t sign = text.starts_with('+') ? 1 : 0; // from_chars takes none
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [next, error] = std::from_chars(text.data() + sign, end, value);
-  if (error == std::errc::result_out_of_range) throw refuse("the number is out of range");
-  if (error != std::errc()) throw refuse("there is no number");
-  if (!std::isfinite(value)) throw refuse("the number is not finite");
+  std::string_view rest = text;
+  const auto number = take_number(rest);
+  // Where there is none, or what is behind it begins as a number goes on: 1,5 and 0x10.
+  const bool goes_on = number && (rest.starts_with(',') || rest.starts_with('.') || rest.starts_with('x') ||
+                                  rest.starts_with('X') || (!rest.empty() && rest[0] >= '0' && rest[0] <= '9'));
+  if (!number || goes_on) {
+    const std::string why = not_a_number(text);
+    throw refuse(why == "is no number" || text.empty() ? "there is no number" : "the number " + why);
+  }
+  const double value = *number;
   std::string unit;
-  for (const char* c = next; c < end; ++c)
-    if (*c != ' ' && *c != '^') unit += *c; // g/cm^3 as g/cm3
+  for (const char c : rest)
+    if (c != ' ' && c != '^') unit += c; // g/cm^3 as g/cm3
   if (unit.empty()) return {value, false, {}};
   for (const Unit& known : units)
-    if (known.dimension == dimension && known.name == unit) return {value * known.in_si, true, known.name};
+    if (known.dimension == dimension && known.name == unit) {
+      if (!std::isfinite(value * known.in_si)) throw refuse("it has no place in a double");
+      return {value * known.in_si, true, known.name};
+    }
   throw refuse(fmt::format("no unit is called {}", unit));
+}
+
+std::string_view meaning(std::string_view unit) {
+  return unit == "R_earth" ? "R_earth is 6371 km, the earth's mean radius" : "";
 }
 
 } // namespace cowgpu

@@ -26,4 +26,7 @@ struct Measure {
 /// `option` opens the messages. Throws Error(bad_argument) with the units that there are.
 Measure parse_measure(std::string_view option, std::string_view text, Dimension dimension);
 
+/// What a unit without one meaning everywhere stands for here: "R_earth is 6371 km, the earth's mean radius". Empty for others.
+std::string_view meaning(std::string_view unit);
+
 } // namespace cowgpu

@@ -84,3 +84,23 @@ TEST_CASE("only the engine names Vulkan", "[layers]") {
   }
   CHECK(files > 20);
 }
+
+TEST_CASE("numbers that people write are read in one place, in every option too", "[layers]") {
+  std::size_t files = 0;
+  for (const char* top : {"host", "bench"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(COWGPU_SOURCE) / top)) {
+      const std::string suffix = entry.path().extension();
+      if (suffix != ".hpp" && suffix != ".cpp") continue;
+      ++files;
+      std::ifstream file(entry.path());
+      const std::string text((std::istreambuf_iterator<char>(file)), {}), name = entry.path().filename();
+      INFO(entry.path());
+      // They take nan, inf, 0x10, blanks, what is behind the number, and some the locale's comma.
+      for (const char* call : {"std::stod", "std::stof", "std::stoi", "std::stol", "std::stoul", "strtod(", "strtold(",
+                               "strtol(", "strtoul(", "strtoll(", "strtoull(", "atof(", "atoi(", "sscanf("})
+        CHECK(text.find(call) == std::string::npos);
+      if (name != "command_line.hpp") CHECK(text.find("#include <CLI/") == std::string::npos);
+      if (entry.path().parent_path().filename() == "cli") CHECK(text.find("from_chars") == std::string::npos);
+    }
+  CHECK(files > 20);
+}

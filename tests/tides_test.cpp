@@ -5,6 +5,7 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/point_masses.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
 #include <functional>
@@ -178,6 +179,40 @@ TEST_CASE("an attitude that is called unstable is left, one that is called stabl
     const double tilt = double(turned_by(y, orbit, time).norm());
     CHECK(stable == (tilt < 5e-3));
   }
+}
+
+TEST_CASE("unstable attitudes too have the periods of what oscillates about them", "[tides]") {
+  // Roll and yaw in units of n: x'' + kx x + (kx - 1) y' = 0, y'' + (1 + 3 g) ky y + (1 - ky) x' = 0.
+  int growing = 0, single = 0, spiral = 0;
+  for (const Vec3& rising : {Vec3(1, 1.4, 1.9), Vec3(1, 1.02, 1.9), Vec3(1, 1.8, 1.9), Vec3(1, 1.05, 1.1)}) {
+    const Orbit orbit = low_orbit(body_with(rising));
+    const double g = orbit.gradient / (orbit.rate * orbit.rate);
+    for (const Libration& one : relative_equilibria(axes_of(rising), orbit)) {
+      const Vec3 i(rising[one.axes[0]], rising[one.axes[1]], rising[one.axes[2]]);
+      const double kx = (i.z() - i.y()) / i.x(), ky = (i.z() - i.x()) / i.y();
+      Eigen::Matrix4d motion;
+      motion << 0, 0, 1, 0, 0, 0, 0, 1, -kx, 0, 0, 1 - kx, 0, -(1 + 3 * g) * ky, ky - 1, 0;
+      const Eigen::Vector4cd s = motion.eigenvalues();
+      std::vector<double> rates;
+      bool complex = false;
+      for (int k = 0; k < 4; ++k) {
+        if (s[k].imag() > 1e-9) rates.push_back(s[k].imag());
+        complex = complex || (std::abs(s[k].imag()) > 1e-9 && std::abs(s[k].real()) > 1e-9);
+      }
+      rates.resize(2);
+      std::sort(rates.begin(), rates.end());
+      CAPTURE(rising.transpose(), one.axes[0], one.axes[1], one.axes[2]);
+      for (std::size_t k : {0U, 1U})
+        CHECK(one.roll_yaw[k] / orbit.rate == Approx(rates[k]).epsilon(1e-10).margin(1e-12));
+      if (one.stability != Stability::unstable) continue;
+      growing += rates[0] > 0 && !complex; // pitch alone leaves it
+      single += rates[0] == 0 && rates[1] > 0;
+      spiral += complex;
+    }
+  }
+  CHECK(growing > 0);
+  CHECK(single > 0);
+  CHECK(spiral > 0);
 }
 
 TEST_CASE("a symmetric body is neutral about its axis, and a ball librates nowhere", "[tides]") {

@@ -136,6 +136,9 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
 
 Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
   const OriginChoice origin = parse_origin(options.origin);
+  if (!options.length.empty()) note_unit("--length", options.length, Dimension::length, notes);
+  if (options.length_unit.ends_with("R_earth"))
+    notes.push_back(fmt::format("--length-unit {}: {}", options.length_unit, meaning("R_earth")));
   Placement placement = parse_placement(options);
   const double density = parse_density("--density", options.density, placement.metric, options.charge);
   RawMesh mesh = load_mended(options.mesh, options.mending);

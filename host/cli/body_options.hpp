@@ -4,7 +4,7 @@
 #include "host/mesh/body.hpp"
 #include "host/mesh/mend.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 
 #include <string>
 #include <vector>
@@ -39,7 +39,7 @@ struct StatedUnits {
 /// Reads --length-unit and --density alone. Throws Error(bad_argument).
 StatedUnits stated_units(const BodyOptions& options);
 
-/// The files that are read, for refuse_same_file().
+/// The words for what is read, for refuse_mesh_as_output().
 std::vector<std::string> input_files(const BodyOptions& options);
 
 } // namespace cowgpu::cli

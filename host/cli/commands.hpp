@@ -7,7 +7,7 @@
 #include "host/mesh/body.hpp"
 #include "host/types.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 
 #include <memory>
 #include <optional>
@@ -85,6 +85,9 @@ void check_memory(const MemoryNeed& need, const Backend& backend, const char* ad
 
 /// Throws Error(bad_argument) where the output's name leads to the file that is read.
 void refuse_same_file(const std::string& input, const std::string& output);
+
+/// The same where the input is a word for a mesh, with the file that the word means.
+void refuse_mesh_as_output(const std::string& mesh, const std::string& output);
 
 /// "X,Y,Z", three finite numbers; nothing if the text is something else.
 std::optional<Vec3> parse_point(std::string_view text);

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/mesh_format.hpp"
+#include "host/io/mesh_source.hpp"
 #include "host/io/shown.hpp"
 #include "host/mesh/builtin.hpp"
 
@@ -9,20 +10,15 @@
 
 #include <filesystem>
 
-#include <charconv>
-#include <cmath>
-
 namespace cowgpu::cli {
 namespace {
 
-// CLI11's own checks let NaN pass, and print bounds of 309 digits.
+// CLI11's own checks print bounds of 309 digits.
 CLI::Validator number_check(const char* what, bool (*holds)(double)) {
   return {[what, holds](const std::string& text) {
-            double value = 0;
-            const char* const end = text.data() + text.size();
-            const auto read = std::from_chars(text.data(), end, value);
-            const bool number = read.ec == std::errc() && read.ptr == end && std::isfinite(value);
-            return number && holds(value) ? std::string() : fmt::format("{} is not {}", shown(text), what);
+            const auto value = read_number(text);
+            if (!value) return fmt::format("{}; it takes {}", number_complaint<double>(text), what);
+            return holds(*value) ? std::string() : fmt::format("{} is not {}", shown(text), what);
           },
           ""};
 }
@@ -52,7 +48,7 @@ void add_common_options(CLI::App& command, Common& common) {
 
 void add_run_options(CLI::App& command, Common& common) {
   command.add_option("--threads", common.threads, "Threads of the CPU path (0: all)")
-      ->check(CLI::Range(0U, 4096U))
+      ->check(in_range(0U, 4096U))
       ->capture_default_str();
   command.add_option("--progress", common.progress, "auto (a line on a terminal), none, or jsonl on stderr")
       ->check(CLI::IsMember({"auto", "none", "jsonl"}))
@@ -81,7 +77,7 @@ void add_grid_option(CLI::App& command, std::string& grid, const char* what) {
 }
 
 void add_degree_option(CLI::App& command, int& lmax, const char* what) {
-  command.add_option("--lmax", lmax, what)->check(CLI::Range(0, largest_grid_degree))->type_name("L");
+  command.add_option("--lmax", lmax, what)->check(in_range(0, largest_grid_degree))->type_name("L");
 }
 
 void check_memory(const MemoryNeed& need, const Backend& backend, const char* advice) {
@@ -100,17 +96,14 @@ void refuse_same_file(const std::string& input, const std::string& output) {
                 fmt::format("{} is input and output at once; give the output another name", output));
 }
 
+void refuse_mesh_as_output(const std::string& mesh, const std::string& output) {
+  if (const auto file = mesh_file(mesh)) refuse_same_file(*file, output);
+}
+
 std::optional<Vec3> parse_point(std::string_view text) {
-  Vec3 point;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (int c = 0; c < 3; ++c) {
-    const auto [next, error] = std::from_chars(at, end, point[c]);
-    const bool comma = next < end && *next == ',';
-    if (error != std::errc() || !std::isfinite(point[c]) || (c < 2 ? !comma : next != end)) return std::nullopt;
-    at = next + 1;
-  }
-  return point;
+  const auto numbers = read_numbers<3>(text);
+  if (!numbers) return std::nullopt;
+  return Vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
 OriginChoice parse_origin(const std::string& text) {
@@ -138,9 +131,8 @@ std::string convention_text(Convention convention) {
 std::string mesh_help() {
   std::string text = "A file (";
   for (const auto& format : mesh_formats()) text += fmt::format("{}, ", format.name);
-  text +=
-      "told by its content; - is standard input), a name that `cowgpu meshes` lists, such as benchmark, or a built-in "
-      "body:";
+  text += "told by its content; - is standard input), a name that `cowgpu meshes` lists, such as benchmark (a file "
+          "called so is ./benchmark), or a built-in body:";
   for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);
   return text;
 }

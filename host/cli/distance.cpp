@@ -135,7 +135,7 @@ void run(const Options& options, const Common& common) {
   const FileFormat format = options.output.empty() || to_stdout ? FileFormat::csv : file_format(options.output);
   std::unique_ptr<AtomicFile> file;
   if (!to_stdout) {
-    refuse_same_file(options.mesh, options.output);
+    refuse_mesh_as_output(options.mesh, options.output);
     refuse_same_file(options.points, options.output);
   }
   if (!options.output.empty() && !to_stdout && !options.dry_run) file = std::make_unique<AtomicFile>(options.output);
@@ -223,7 +223,7 @@ void add_distance(CLI::App& app, Common& common) {
   command
       ->add_option("--grid", options->grid,
                    "Instead of POINTS a lattice: N points along the longest side of the bounding box enlarged by 1.1")
-      ->check(CLI::Range(std::size_t(2), std::size_t(4096)))
+      ->check(in_range(std::size_t(2), std::size_t(4096)))
       ->type_name("N");
   command
       ->add_option("-o,--output", options->output,

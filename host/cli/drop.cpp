@@ -185,7 +185,7 @@ Solve add_drop(CLI::App& command, Common& program) {
       ->type_name("AXIS,RATE");
   command.add_option("--order", options->order, "Highest degree of the multipoles")
       ->type_name("L")
-      ->check(CLI::Range(2, 64))
+      ->check(in_range(2, 64))
       ->capture_default_str();
   return [options, &program](const PhysicsOptions& common) { return solve(common, *options, program.style()); };
 }

@@ -184,7 +184,7 @@ void run(const Options& options, Common& common) {
   // Before long work: a result that cannot be written should fail now.
   std::vector<std::unique_ptr<AtomicFile>> files;
   for (const std::string& path : options.outputs) {
-    for (const std::string& input : input_files(options.body)) refuse_same_file(input, path);
+    for (const std::string& input : input_files(options.body)) refuse_mesh_as_output(input, path);
     if (!options.map_file.empty()) refuse_same_file(options.map_file, path);
   }
   if (!options.dry_run)
@@ -250,7 +250,7 @@ void add_expand(CLI::App& app, Common& common) {
       app.add_subcommand("expand", "Multipole moments of a closed mesh, and its surface over maps to the sphere");
   add_body_options(*command, options->body);
   command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
-      ->check(CLI::Range(0, largest_degree))
+      ->check(in_range(0, largest_degree))
       ->capture_default_str();
   command
       ->add_option(
@@ -291,13 +291,13 @@ void add_expand(CLI::App& app, Common& common) {
               "--refinements", options->refinements,
               "flow: of the mesh, for signed sheets and the paper's recipe; each takes four times as long. On the "
               "benchmark at T = 0.2 coefficients to degree 8 are then known to 4e-3 from 3, to 1e-3 from 4")
-          ->check(CLI::Range(1, 5))
+          ->check(in_range(1, 5))
           ->type_name("N")
           ->capture_default_str();
   CLI::Option* grid = command
                           ->add_option("--flow-grid", options->flow_grid,
                                        "flow: least degree of the grid on which the level set is met")
-                          ->check(CLI::Range(64, largest_grid_degree))
+                          ->check(in_range(64, largest_grid_degree))
                           ->type_name("N")
                           ->capture_default_str();
   command->add_flag("--aliasing", options->aliasing,
@@ -306,7 +306,7 @@ void add_expand(CLI::App& app, Common& common) {
       ->add_option("--cut-off", options->cut_off,
                    "Leave out, degree by degree, triangles that add up to less than this part of the degree's bound "
                    "(0: none)")
-      ->check(CLI::Range(0.0, 1e-3))
+      ->check(in_range(0.0, 1e-3))
       ->capture_default_str();
   command
       ->add_option(

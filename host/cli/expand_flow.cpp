@@ -4,11 +4,11 @@
 #include "host/error.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace cowgpu::cli {
@@ -164,13 +164,11 @@ void check_flow_time(double time, const Box& box) {
 
 double parse_flow_time(const std::string& text) {
   if (text == "auto") return 0;
-  double time = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, time);
-  if (read.ec != std::errc() || read.ptr != end || !std::isfinite(time) || !(time > 0))
+  const auto time = read_number(text);
+  if (!time || !(*time > 0))
     throw Error(Fault::bad_argument,
                 fmt::format("--time {}: it must be auto or a number above 0, in the mesh's length unit", text));
-  return time;
+  return *time;
 }
 
 } // namespace cowgpu::cli

@@ -175,7 +175,7 @@ void run(const Options& options, const Common& common) {
                             options.output, options.name));
   parse_view(options.view);
   parse_plane(options.plane);
-  refuse_same_file(options.mesh, options.output);
+  refuse_mesh_as_output(options.mesh, options.output);
   for (const std::string& file : options.results) refuse_same_file(file, options.output);
   const bool orders = options.name == "orders", takes_results = orders || options.name == "spectra";
   if (!options.results.empty() && (!takes_results || !options.of.empty() || (orders && options.results.size() > 1)))
@@ -224,7 +224,7 @@ void add_figure(CLI::App& app, Common& common) {
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degree of the expansions")
-      ->check(CLI::Range(8, largest_surface_degree))
+      ->check(in_range(8, largest_surface_degree))
       ->type_name("L")
       ->capture_default_str();
   command->add_option("--view", options->view, "Of surfaces: " + view_names() + ", or AZ,EL in degrees")
@@ -234,7 +234,7 @@ void add_figure(CLI::App& app, Common& common) {
       ->type_name("PLANE")
       ->capture_default_str();
   command->add_option("--count", options->lines, "Streamlines")
-      ->check(CLI::Range(std::size_t(1), std::size_t(100'000)))
+      ->check(in_range(std::size_t(1), std::size_t(100'000)))
       ->type_name("N")
       ->capture_default_str();
   add_common_options(*command, common);

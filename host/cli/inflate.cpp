@@ -11,6 +11,7 @@
 #include "host/io/png.hpp"
 #include "host/io/shown.hpp"
 #include "host/mesh/audit.hpp"
+#include "host/number.hpp"
 #include "host/report/flow_result.hpp"
 #include "host/report/json_parts.hpp"
 
@@ -18,7 +19,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -54,9 +54,8 @@ std::vector<Level> parse_levels(const std::string& text) {
   for (std::string word; std::getline(words, word, ',');) {
     Level level{{word, "inflated-" + word}, 0};
     if (word != star_word) {
-      const char* const end = word.data() + word.size();
-      const auto read = std::from_chars(word.data(), end, level.distance);
-      if (read.ec != std::errc() || read.ptr != end || !std::isfinite(level.distance) || !(level.distance > 0))
+      level.distance = read_number(word).value_or(0);
+      if (!(level.distance > 0))
         throw Error(Fault::bad_argument,
                     fmt::format("--levels {}: \"{}\" is no level; there are numbers above 0 in the mesh's length unit, "
                                 "and star for the least that makes the body star-shaped, separated by commas",
@@ -183,8 +182,8 @@ void run(const Options& options, const Common& common) {
     throw Error(Fault::bad_argument, fmt::format("--picture {}: the name must end in .png", options.picture));
   SurfaceOutputs outputs(options.output, options.format, levels.size(), "level");
   for (const Level& level : levels)
-    if (outputs.any()) refuse_same_file(options.mesh, outputs.path(level.key));
-  if (!options.picture.empty()) refuse_same_file(options.mesh, options.picture);
+    if (outputs.any()) refuse_mesh_as_output(options.mesh, outputs.path(level.key));
+  if (!options.picture.empty()) refuse_mesh_as_output(options.mesh, options.picture);
   if (outputs.any()) outputs.open(levels.front().key);
   std::unique_ptr<AtomicFile> picture;
   if (!options.picture.empty()) picture = std::make_unique<AtomicFile>(options.picture);
@@ -274,7 +273,7 @@ void add_inflate(CLI::App& app, Common& common) {
       ->check(CLI::IsMember({"glb", "ply"}));
   command
       ->add_option("--cells", options->cells, "Cubes along the longest side of the box in which a level is looked for")
-      ->check(CLI::Range(4, 1024))
+      ->check(in_range(4, 1024))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--picture", options->picture, "The inflated bodies side by side, FILE.png")->type_name("FILE");
@@ -282,10 +281,10 @@ void add_inflate(CLI::App& app, Common& common) {
       ->type_name("VIEW")
       ->capture_default_str();
   command->add_option("--width", options->width, "Pixels of a panel of the picture")
-      ->check(CLI::Range(1, largest_picture))
+      ->check(in_range(1, largest_picture))
       ->capture_default_str();
   command->add_option("--height", options->height, "Pixels of a panel of the picture")
-      ->check(CLI::Range(1, largest_picture))
+      ->check(in_range(1, largest_picture))
       ->capture_default_str();
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.inflate.v1.json)");
   add_common_options(*command, common);

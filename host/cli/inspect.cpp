@@ -37,7 +37,7 @@ void run(const Options& options, const Common& common) {
   std::unique_ptr<AtomicFile> file;
   if (!options.output.empty()) {
     is_ply(options.output);
-    refuse_same_file(options.mesh, options.output);
+    refuse_mesh_as_output(options.mesh, options.output);
     file = std::make_unique<AtomicFile>(options.output);
   }
   RawMesh mesh = load_mended(options.mesh, options.mending);

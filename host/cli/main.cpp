@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <filesystem>
 #include <new>
+#include <stdexcept>
 
 using namespace cowgpu;
 
@@ -22,9 +24,11 @@ int run(int argc, char** argv) {
   CLI::App app("Exact multipole moments of triangle meshes, on the GPU and on the CPU");
   app.set_version_flag("--version", std::string("cowgpu ") + version);
   app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 ok, 1 a numeric check failed, 2 usage, 3 bad input, 4 no or lost device, 5 input/output, "
-      "130 interrupted.\nFirst steps: cowgpu expand --lmax 8; cowgpu expand MESH.off --lmax 512 -o moments.json");
+  app.footer("Exit codes: 0 ok, 1 a numeric check failed, 2 usage, 3 bad input, 4 no or lost device, 5 input/output, "
+             "130 interrupted.\nNumbers are decimal and finite, with a point and perhaps an exponent (1e-3); whole "
+             "numbers are "
+             "digits alone, after a sign perhaps (010 is ten).\nFirst steps: cowgpu expand --lmax 8; cowgpu expand "
+             "MESH.off --lmax 512 -o moments.json");
   cli::Common common;
   common.command.assign(argv, argv + argc);
   cli::add_expand(app, common);
@@ -101,6 +105,10 @@ int main(int argc, char** argv) {
     return fail(name(fault).data(), error.what(), exit_code(fault));
   } catch (const std::bad_alloc&) {
     return fail("too-large", "this machine has not enough memory for this; lower --lmax or take a smaller mesh", 3);
+  } catch (const std::length_error&) {
+    return fail("too-large", "this is more than any machine's memory holds; lower --lmax or take a smaller mesh", 3);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(name(Fault::cannot_read).data(), error.what(), exit_code(Fault::cannot_read));
   } catch (const std::exception& error) {
     return fail("internal", error.what(), 70);
   }

@@ -10,12 +10,11 @@
 #include "host/map/stretch.hpp"
 #include "host/map/stretch_repeats.hpp"
 #include "host/mesh/half_edges.hpp"
+#include "host/number.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/map_report.hpp"
 
 #include <fmt/format.h>
-
-#include <charconv>
 
 namespace cowgpu::cli {
 namespace {
@@ -53,8 +52,8 @@ void refuse_strangers(const std::vector<Belonging>& belongings, const std::strin
 Pole parse_pole(const std::string& text) {
   Pole pole;
   if (text == "back") return pole;
-  const char* const end = text.data() + text.size();
-  if (const auto read = std::from_chars(text.data(), end, pole.vertex); read.ec == std::errc() && read.ptr == end) {
+  if (const auto vertex = read_natural(text)) {
+    pole.vertex = *vertex;
     pole.rule = Pole::Rule::vertex;
     return pole;
   }
@@ -119,7 +118,7 @@ void run(const Options& options, const Common& common) {
   }
   const MapFormat format = options.output.empty() ? MapFormat::ply : map_format(options.output);
   std::unique_ptr<AtomicFile> file; // before long work: what cannot be written should fail now
-  if (!options.output.empty()) refuse_same_file(options.mesh, options.output);
+  if (!options.output.empty()) refuse_mesh_as_output(options.mesh, options.output);
   if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
 
   const ManifoldSurface surface =
@@ -226,7 +225,7 @@ void add_map(CLI::App& app, Common& common) {
   scale->excludes(centre)->excludes(polish); // centring undoes any scale
   for (CLI::Option* own : {weights, pole, scale, centre, polish}) recipe->excludes(own);
   CLI::Option* sweeps = command->add_option("--sweeps", options->sweeps, "stretch: relaxations of all vertices")
-                            ->check(CLI::Range(0U, 1000000U))
+                            ->check(in_range(0U, 1000000U))
                             ->type_name("N")
                             ->capture_default_str();
   CLI::Option* lambda = command
@@ -243,7 +242,7 @@ void add_map(CLI::App& app, Common& common) {
           ->add_option("--relabellings", options->relabellings,
                        "stretch: map so many copies of the body, numbered and turned at random, as well, and say how "
                        "many come to the same map (each takes as long as the first)")
-          ->check(CLI::Range(0U, 10000U))
+          ->check(in_range(0U, 10000U))
           ->type_name("N")
           ->capture_default_str();
   CLI::Option* time = command
@@ -257,7 +256,7 @@ void add_map(CLI::App& app, Common& common) {
                                          "flow: where directions are seen from: com (centre of mass), mesh or X,Y,Z")
                             ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degree of the grid that the map is judged against")
-      ->check(CLI::Range(1, largest_grid_degree))
+      ->check(in_range(1, largest_grid_degree))
       ->type_name("L")
       ->capture_default_str();
   command

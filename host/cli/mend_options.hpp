@@ -3,7 +3,7 @@
 
 #include "host/mesh/mend.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 
 #include <string>
 

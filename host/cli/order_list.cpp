@@ -2,12 +2,12 @@
 
 #include "host/error.hpp"
 #include "host/io/shown.hpp"
+#include "host/number.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -16,11 +16,7 @@ namespace cowgpu::cli {
 namespace {
 
 std::optional<int> number(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > largest_surface_degree)
-    return std::nullopt;
-  return value;
+  return read_whole(text, 0, largest_surface_degree);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
 #include "host/io/potential_file.hpp"
+#include "host/number.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/plot/plot.hpp"
@@ -253,7 +254,7 @@ void check_options(const PhysicsOptions& common, const Options& options) {
   std::vector<std::string> outputs = options.plots;
   if (!options.output.empty()) outputs.push_back(options.output);
   for (const std::string& output : outputs) {
-    for (const std::string& name : input_files(common.body)) refuse_same_file(name, output);
+    for (const std::string& name : input_files(common.body)) refuse_mesh_as_output(name, output);
     refuse_same_file(options.places.at, output);
   }
 }
@@ -446,7 +447,7 @@ Solve add_potential(CLI::App& command, Common& common) {
           "(of the reference radius of a file that does not say it)")
       ->type_name("R");
   command.add_option("--resolution", options->places.resolution, "Rings of its Gauss-Legendre grid")
-      ->check(CLI::Range(1, largest_grid_degree + 1))
+      ->check(in_range(1, largest_grid_degree + 1))
       ->capture_default_str()
       ->type_name("N");
   command
@@ -457,12 +458,12 @@ Solve add_potential(CLI::App& command, Common& common) {
   command
       .add_option("--order,--lmax", options->lmax,
                   fmt::format("Degree that the series goes to (default {}, of a file all it has)", usual_degree))
-      ->check(CLI::Range(0, largest_potential_degree))
+      ->check(in_range(0, largest_potential_degree))
       ->type_name("L");
   command
       .add_option("--derivatives", options->derivatives,
                   "0 potential, 1 acceleration too, 2 the acceleration's gradient too")
-      ->check(CLI::Range(0, 2))
+      ->check(in_range(0, 2))
       ->capture_default_str()
       ->type_name("N");
   command

@@ -2,12 +2,12 @@
 
 #include "host/cli/order_list.hpp"
 #include "host/error.hpp"
+#include "host/number.hpp"
 #include "host/physics/potential.hpp"
 #include "host/report/potential_plot.hpp"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <sstream>
 
 namespace cowgpu::cli {
@@ -20,15 +20,14 @@ std::vector<double> parse_distances(const std::string& text) {
   std::vector<double> distances;
   std::istringstream words(text + ",");
   for (std::string word; std::getline(words, word, ',');) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !(value >= 1) || !(value <= farthest_good))
+    const auto value = read_number(word);
+    if (!value || !(*value >= 1) || !(*value <= farthest_good))
       throw Error(
           Fault::bad_argument,
           fmt::format("--distances {}: \"{}\" is none; they are numbers from 1 to {} between commas, in radii of "
                       "the sphere that holds the body",
                       text, word, farthest_good));
-    distances.push_back(value);
+    distances.push_back(*value);
   }
   return distances;
 }

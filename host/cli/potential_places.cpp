@@ -4,13 +4,13 @@
 #include "host/error.hpp"
 #include "host/io/point_file.hpp"
 #include "host/io/shown.hpp"
+#include "host/number.hpp"
 #include "host/sphere_directions.hpp"
 #include "host/units.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <sstream>
 
@@ -53,10 +53,9 @@ Plane parse_plane(const std::string& text) {
   for (std::string word; std::getline(in, word, ',');) words.push_back(word);
   if (words.size() != 4 || words[0].size() != 1 || words[0][0] < 'x' || words[0][0] > 'z') throw refuse();
   Plane plane{words[0][0] - 'x', 0, words[1], words[2]};
-  const std::string& n = words[3];
-  const auto [end, error] = std::from_chars(n.data(), n.data() + n.size(), plane.count);
-  if (error != std::errc() || end != n.data() + n.size() || plane.count < 2 || plane.count > most_along_plane)
-    throw refuse();
+  const auto count = read_whole(words[3], 2, most_along_plane);
+  if (!count) throw refuse();
+  plane.count = *count;
   return plane;
 }
 

@@ -2,13 +2,13 @@
 
 #include "host/cli/commands.hpp"
 #include "host/error.hpp"
+#include "host/number.hpp"
 #include "host/spectrum/rotation.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -68,6 +68,12 @@ std::optional<double> stated_metres(const std::string& text) {
   return text.empty() ? std::nullopt : std::optional(parse_length_unit(text));
 }
 
+void note_unit(const std::string& option, const std::string& text, Dimension dimension,
+               std::vector<std::string>& notes) {
+  const std::string_view stands_for = meaning(parse_measure(option, text, dimension).unit);
+  if (!stands_for.empty()) notes.push_back(fmt::format("{} {}: {}", option, text, stands_for));
+}
+
 Eigen::Matrix3d parse_rotation(const std::string& option, const std::string& text) {
   const auto angles = parse_point(text);
   if (!angles)
@@ -102,13 +108,11 @@ LongMat3 parse_turn(const std::string& option, const std::string& text) {
   const Vec3 axis = parse_axis(option, text.substr(0, colon));
   std::string number = text.substr(colon + 1);
   if (number.ends_with("deg")) number.resize(number.size() - 3);
-  double degrees = 0;
-  const char* const end = number.data() + number.size();
-  const auto [next, error] = std::from_chars(number.data(), end, degrees);
-  if (error != std::errc() || next != end || !std::isfinite(degrees))
+  const auto degrees = read_number(number);
+  if (!degrees)
     throw Error(Fault::bad_argument,
                 fmt::format("{} {}: after the axis it takes an angle in degrees, as in x:30", option, text));
-  return turn_about(axis, degrees);
+  return turn_about(axis, *degrees);
 }
 
 physics::PointMass parse_point_mass(const std::string& option, const std::string& text) {

@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace cowgpu::cli {
 
@@ -29,6 +30,10 @@ double parse_length_unit(const std::string& text);
 /// stated_metres(), which is empty where the option is not given.
 void add_length_unit_option(CLI::App& command, std::string& text, const char* of);
 std::optional<double> stated_metres(const std::string& text);
+
+/// Adds to the notes what the text's unit stands for, where that is not the same everywhere: R_earth.
+void note_unit(const std::string& option, const std::string& text, Dimension dimension,
+               std::vector<std::string>& notes);
 
 /// "ALPHA,BETA,GAMMA" in degrees as R_z(ALPHA) R_y(BETA) R_z(GAMMA); multiples of 90 are exact. Throws Error(bad_argument).
 Eigen::Matrix3d parse_rotation(const std::string& option, const std::string& text);

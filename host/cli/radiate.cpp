@@ -216,13 +216,16 @@ void add_octupole(const Radiation& r, Findings& found) {
                         double(current_quadrupole_power(*r.current_quadrupole, r.omega)), "W"});
 }
 
-std::vector<Comparison> beside_paper(const Radiation& r) {
+std::vector<Comparison> beside_paper(const Radiation& r, const Body& body) {
   const std::string sampled = "from the paper's tensors, which are up to 2 % off";
   const double square_si = r.square, erg = double(r.power) * 1e7, year = 365 * 86400.0;
+  const double box_length = bounding_box(body.surface.vertices(), body.surface.faces()).longest_side();
+  const double length_unit = paper::length / (box_length / body.placement.scale);
   const double rounded = (13.787e9 - 12e6) * year / (2 * paper::timescale_s);
   return {
-      {"length unit in m", paper::length / paper::box_length, paper::length_unit_m,
-       "three digits of 2.3946; the power grows like its tenth power, + 1.9 %"},
+      {"length unit in m", length_unit, paper::length_unit_m,
+       "2.5 m over the mesh's own length, 1.044392, is 2.39374 m, cut to three digits; the power grows like its tenth "
+       "power, +1.57 %"},
       {"mass unit in kg", *r.unit_kg, paper::mass_unit_kg},
       {"volume", r.tensors.mass / *r.unit_kg, paper::volume, "0.05348 rounds to 0.053"},
       {"mass in kg", r.tensors.mass, paper::mass_kg, "of the volume 0.054"},
@@ -281,7 +284,7 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
   // A note says why what is not known is not.
   for (Finding& row : found.rows) row.missing = r.spin && row.key == "timescale_s" ? "never: nothing is radiated" : "";
   add_octupole(r, found);
-  if (common.paper() && r.spin) found.paper = beside_paper(r);
+  if (common.paper() && r.spin) found.paper = beside_paper(r, *input.body);
   return found;
 }
 

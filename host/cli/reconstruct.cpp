@@ -179,17 +179,17 @@ void add_reconstruct(CLI::App& app, Common& common) {
   command
       ->add_option("--lmax", options->source.lmax,
                    fmt::format("Degree of a mesh's expansion (the largest order, {} at least)", default_lmax))
-      ->check(CLI::Range(0, largest_surface_degree))
+      ->check(in_range(0, largest_surface_degree))
       ->type_name("L");
   command->add_option("--mesh", options->source.mesh, "Of a file: the true body, for distances")->type_name("MESH");
   command
       ->add_option("--resolution", options->resolution,
                    "Vertices lie on 2 N + 1 rings of at least as many points (N: four times the order, 64 at least, "
                    "256 at most or the order)")
-      ->check(CLI::Range(1, largest_grid_degree))
+      ->check(in_range(1, largest_grid_degree))
       ->type_name("N");
   command->add_option("--samples", options->samples, "Points of each surface that distances are taken from")
-      ->check(CLI::Range(std::size_t(1), std::size_t(100000000)))
+      ->check(in_range(std::size_t(1), std::size_t(100000000)))
       ->capture_default_str();
   command
       ->add_option("-o,--output", options->output,

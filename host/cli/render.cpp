@@ -87,7 +87,7 @@ void run(const Options& given, const Common& common) {
   if (options.resolution > 0 && options.resolution < largest)
     throw Error(Fault::bad_argument, fmt::format("--resolution {} cannot show order {}; it must be at least the order",
                                                  options.resolution, largest));
-  refuse_same_file(options.source.input, options.output);
+  refuse_mesh_as_output(options.source.input, options.output);
   AtomicFile file(options.output); // before long work: what cannot be written should fail now
 
   auto backend = open_backend(common, nullptr);
@@ -152,23 +152,23 @@ void add_render(CLI::App& app, Common& common) {
       ->add_option(
           "--lmax", options->source.lmax,
           fmt::format("With --order: degree of a mesh's expansion (the largest order, {} at least)", default_lmax))
-      ->check(CLI::Range(0, largest_surface_degree))
+      ->check(in_range(0, largest_surface_degree))
       ->type_name("L");
   command->add_option("--mesh", options->source.mesh, "Of a file: the true body, for --order mesh")->type_name("MESH");
   command
       ->add_option("--resolution", options->resolution,
                    "Vertices of rebuilt bodies lie on 2 N + 1 rings (N: four times the order, 64 at least, 256 at "
                    "most or the order)")
-      ->check(CLI::Range(1, largest_grid_degree))
+      ->check(in_range(1, largest_grid_degree))
       ->type_name("N");
   command->add_option("--columns", options->columns, "Panels side by side (up to 4, then a square)")
-      ->check(CLI::Range(1, largest_picture))
+      ->check(in_range(1, largest_picture))
       ->type_name("N");
   command->add_option("--width", options->width, "Pixels of a panel")
-      ->check(CLI::Range(1, largest_picture))
+      ->check(in_range(1, largest_picture))
       ->capture_default_str();
   command->add_option("--height", options->height, "Pixels of a panel")
-      ->check(CLI::Range(1, largest_picture))
+      ->check(in_range(1, largest_picture))
       ->capture_default_str();
   command->add_flag("--transparent", options->transparent, "No background");
   command->add_flag("--flat", options->flat, "Show the triangles: no smooth shading");

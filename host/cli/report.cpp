@@ -120,7 +120,8 @@ void run(const Options& options, const Common& common) {
     place(source.mesh, result_json::placement(options.result, source.document));
     field = backend->distance_field(source.mesh.vertices, source.mesh.faces);
     document.mesh_name = source.mesh.name;
-    if (source.document.value("/mesh/sha256"_json_pointer, "") != source.mesh.sha256) {
+    const auto hash = "/mesh/sha256"_json_pointer;
+    if (!source.document.contains(hash) || source.document.at(hash) != source.mesh.sha256) {
       document.notes.push_back(fmt::format("{} has another SHA-256 than the mesh that was expanded", source.mesh.name));
       say(fmt::format("cowgpu: warning: {}: distances are to another body\n", document.notes.back()));
     }
@@ -178,7 +179,7 @@ void add_report(CLI::App& app, Common& common) {
   command
       ->add_option("--order", options->order,
                    fmt::format("The largest order of the body ({} or the expansion's)", default_order))
-      ->check(CLI::Range(0, largest_order))
+      ->check(in_range(0, largest_order))
       ->type_name("L");
   command->add_option("-o,--output", options->output, "The page, FILE.html")
       ->type_name("FILE")

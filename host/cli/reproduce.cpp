@@ -6,6 +6,7 @@
 #include "host/io/atomic_file.hpp"
 #include "host/io/file.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/io/result_json.hpp"
 #include "host/io/sha256.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/page.hpp"
@@ -13,6 +14,7 @@
 #include "host/reproduce/tables.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -59,13 +61,20 @@ private:
 void make_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) throw Error(Fault::cannot_write, fmt::format("{}: {}", folder.string(), failed.message()));
+  if (!failed && !fs::is_directory(folder, failed)) failed = std::make_error_code(std::errc::not_a_directory);
+  if (failed)
+    throw Error(Fault::cannot_write, fmt::format("the folder {} cannot be made: {}; take another one with -o",
+                                                 folder.string(), failed.message()));
 }
 
 // The stages run in the folder of the results, and find the same meshes there.
 void pin_mesh_folder() {
-  if (const char* folder = std::getenv("COWGPU_MESHES"); folder && *folder)
-    setenv("COWGPU_MESHES", fs::absolute(folder).c_str(), 1);
+  const char* folder = std::getenv("COWGPU_MESHES");
+  if (!folder || !*folder) return;
+  std::error_code failed;
+  const fs::path absolute = fs::absolute(folder, failed);
+  if (failed) throw Error(Fault::cannot_read, fmt::format("the folder COWGPU_MESHES={}: {}", folder, failed.message()));
+  setenv("COWGPU_MESHES", absolute.c_str(), 1);
 }
 
 // What a stage said last, for one that failed.
@@ -79,9 +88,27 @@ std::string last_words(const fs::path& log) {
 struct Run {
   const Options& options;
   ConsoleMonitor& monitor;
-  std::string program;        // its hash
+  std::string program; // its hash and the mesh's
+  std::string mesh_hash;
   double all = 0, before = 0; // seconds that stages are expected to take
 };
+
+// Stages read the mesh for themselves: what they say they measured is compared with what was found at first.
+std::string other_mesh(const Stage& stage, const Run& run) {
+  std::vector<std::string> files = stage.files;
+  files.push_back(stage.output);
+  for (const std::string& file : files) {
+    if (!file.ends_with(".json")) continue;
+    const nlohmann::json document = result_json::parse(fs::path(run.options.folder) / file);
+    for (const char* member : {"/mesh/sha256", "/input/sha256"}) {
+      const nlohmann::json::json_pointer where(member);
+      if (document.contains(where) && document.at(where) != run.mesh_hash)
+        return fmt::format("the mesh is another one by now: {} is of sha256 {}, and this run of {}", file,
+                           document.at(where).dump(), run.mesh_hash);
+    }
+  }
+  return {};
+}
 
 Ran run_stage(const Stage& stage, State& state, Run& run) {
   const fs::path folder = run.options.folder;
@@ -103,7 +130,17 @@ Ran run_stage(const Stage& stage, State& state, Run& run) {
     ran.message = last_words(folder / log);
     return ran;
   }
-  fs::rename(folder / part, folder / stage.output);
+  std::error_code failed;
+  fs::rename(folder / part, folder / stage.output, failed);
+  if (failed)
+    throw Error(Fault::cannot_write,
+                fmt::format("{} cannot be replaced: {}; move it away, or take another folder with -o",
+                            (folder / stage.output).string(), failed.message()));
+  if (const std::string other = other_mesh(stage, run); !other.empty()) {
+    ran.exit_code = exit_code(Fault::cannot_read);
+    ran.message = other;
+    return ran;
+  }
   state.finish(stage, key, ran.seconds);
   return ran;
 }
@@ -115,7 +152,7 @@ Documents documents(const Reproduction& all, const fs::path& folder) {
     std::vector<std::string> files = ran.stage.files;
     files.push_back(ran.stage.output);
     for (const std::string& file : files)
-      if (file.ends_with(".json")) read[fs::path(file).filename()] = nlohmann::json::parse(read_file(folder / file));
+      if (file.ends_with(".json")) read[fs::path(file).filename()] = result_json::parse(folder / file);
   }
   return read;
 }
@@ -148,6 +185,10 @@ void check_names(const std::vector<std::string>& wanted, const std::vector<Stage
 // The mesh to take, and its name.
 RawMesh find_mesh(const Options& options, std::string& name) {
   name = options.mesh.empty() ? "benchmark" : options.mesh;
+  if (mesh_kind(name) == MeshKind::standard_input)
+    throw Error(Fault::bad_argument,
+                "--mesh -: every stage reads the mesh for itself, and standard input is read once; "
+                "write the mesh to a file and name that");
   try {
     return load_mesh(name);
   } catch (const Error& error) {
@@ -166,7 +207,7 @@ void reproduce_all(const Options& options, Common& common) {
   all.created = utc_now();
   pin_mesh_folder();
   const RawMesh mesh = find_mesh(options, all.mesh);
-  if (fs::exists(all.mesh)) all.mesh = fs::absolute(all.mesh);
+  all.mesh = mesh_word_anywhere(all.mesh); // stages run in another folder
   all.mesh_hash = mesh.sha256;
   all.papers_mesh = mesh.sha256 == benchmark_sha256;
   all.asked_for = !options.mesh.empty();
@@ -178,7 +219,8 @@ void reproduce_all(const Options& options, Common& common) {
   check_names(options.only, plan.stages);
   State state(folder);
   ConsoleMonitor monitor(common.style());
-  Run run{options, monitor, sha256_hex(std::string_view(read_file("/proc/self/exe"))) + all.mesh_hash, 0, 0};
+  Run run{options,       monitor, sha256_hex(std::string_view(read_file("/proc/self/exe"))) + all.mesh_hash,
+          all.mesh_hash, 0,       0};
   // With --only the others are shown where they were done before.
   std::vector<Stage> stages;
   for (const Stage& stage : plan.stages) {
@@ -208,7 +250,7 @@ void reproduce_all(const Options& options, Common& common) {
     all.device = mass->second.value("device", nlohmann::json());
   if (const auto errata = found.find("errata.json"); errata != found.end()) all.errata = errata->second;
   for (const Figure& figure : plan.figures)
-    if (fs::exists(folder / figure.file)) all.figures.push_back(figure);
+    if (std::error_code none; fs::exists(folder / figure.file, none)) all.figures.push_back(figure);
   write_whole(folder / "reproduce.json", json_text(reproduce_json(all)) + "\n");
   write_whole(folder / "reproduce.md", reproduce_markdown(all));
   const Tally counts = tally(all.rows);

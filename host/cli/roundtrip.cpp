@@ -185,7 +185,7 @@ void add_roundtrip(CLI::App& transform, Common& common) {
   add_degree_option(*command, options->lmax, "Largest degree, 0 to 8192");
   command->get_option("--lmax")->required();
   command->add_option("--fields", options->fields, "Fields transformed together")
-      ->check(CLI::Range(1, most_fields))
+      ->check(in_range(1, most_fields))
       ->capture_default_str();
   add_grid_option(*command, options->grid,
                   "gl (Gauss-Legendre), cc (Clenshaw-Curtis), dh (Driscoll-Healy, n x 2n), dh1 "
@@ -195,7 +195,7 @@ void add_roundtrip(CLI::App& transform, Common& common) {
       ->check(non_negative_number())
       ->capture_default_str();
   command->add_option("--runs", options->runs, "Timed runs after one to warm up; medians are shown")
-      ->check(CLI::Range(1, 1000))
+      ->check(in_range(1, 1000))
       ->capture_default_str();
   command->add_flag("--json", options->json,
                     "As JSON on stdout (data/schemas/cowgpu.roundtrip.v1.json), times in seconds");

@@ -79,7 +79,7 @@ void run(const Options& options, const Common& common) {
                 fmt::format("--origin {}: it must be three numbers X,Y,Z in mesh coordinates", options.origin));
   table.origin = *origin;
   std::unique_ptr<AtomicFile> file;
-  if (!to_stdout) refuse_same_file(options.mesh, options.output);
+  if (!to_stdout) refuse_mesh_as_output(options.mesh, options.output);
   if (layout != Layout::none && !to_stdout) file = std::make_unique<AtomicFile>(options.output);
 
   auto start = Clock::now();
@@ -171,7 +171,7 @@ void add_streamlines(CLI::App& app, Common& common) {
       ->check(positive_number())
       ->type_name("T");
   auto* count = command->add_option("--count", options->count, "Lines, evenly spaced along the cut")
-                    ->check(CLI::Range(std::size_t(1), most_lines))
+                    ->check(in_range(std::size_t(1), most_lines))
                     ->type_name("N")
                     ->capture_default_str();
   auto* spacing =
@@ -191,7 +191,7 @@ void add_streamlines(CLI::App& app, Common& common) {
       ->type_name("X,Y,Z")
       ->capture_default_str();
   command->add_option("--tolerance", options->tolerance, "Error allowed per time on the medial axis")
-      ->check(CLI::Range(1e-12, 1e-2))
+      ->check(in_range(1e-12, 1e-2))
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "Lines as FILE.csv or FILE.json, or - for CSV on standard output")
       ->type_name("FILE");

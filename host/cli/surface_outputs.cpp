@@ -31,7 +31,7 @@ SurfaceOutputs::SurfaceOutputs(const std::string& output, const std::string& for
   const std::string suffix = fs::path(output).extension();
   folder_ = suffix != ".ply" && suffix != ".glb";
   if (folder_) {
-    if (!suffix.empty() && !fs::is_directory(output))
+    if (std::error_code none; !suffix.empty() && !fs::is_directory(output, none))
       fail(fmt::format("-o {}: a file's name must end in .glb or .ply; a folder has no suffix", output));
     suffix_ = "." + (format.empty() ? "glb" : format);
     return;

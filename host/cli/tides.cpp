@@ -53,16 +53,18 @@ int order_of(const PhysicsInput& input, const PlacedTensors& placed, int asked, 
 }
 
 Table equilibria_table(const Tides& t) {
-  Table table{"equilibria",
-              "attitudes at rest under degree 2 (four each, by half turns)",
-              {{"outwards"},
-               {"along"},
-               {"normal"},
-               {"stability"},
-               {"pitch_period", "s"},
-               {"roll_yaw_slow_period", "s"},
-               {"roll_yaw_fast_period", "s"}},
-              {}};
+  Table table{
+      "equilibria",
+      "attitudes at rest under degree 2 (four each, by half turns); periods of small motions about them, which may "
+      "grow where it is unstable (-: does not oscillate)",
+      {{"outwards"},
+       {"along"},
+       {"normal"},
+       {"stability"},
+       {"pitch_period", "s"},
+       {"roll_yaw_slow_period", "s"},
+       {"roll_yaw_fast_period", "s"}},
+      {}};
   for (const Libration& found : relative_equilibria(t.principal, t.orbit)) {
     const auto axis = [&](std::size_t i) { return Value(std::string(principal_names[found.axes[i]])); };
     table.rows.push_back({axis(0), axis(1), axis(2), Value(std::string(name(found.stability))), period(found.pitch),
@@ -132,6 +134,7 @@ Tides read_tides(const PhysicsInput& input, const PhysicsOptions& common, const 
   Tides t;
   t.centre = parse_point_mass("--mass", options.mass);
   const double radius = parse_positive("--orbit", options.orbit, Dimension::length, "6771km");
+  note_unit("--orbit", options.orbit, Dimension::length, found.notes);
   t.placed = metric_tensors(input, common);
   t.body = massive_body(input, t.placed, order_of(input, t.placed, options.order, found.notes));
   t.principal = principal_axes(about_centre(t.placed.tensors));
@@ -140,8 +143,9 @@ Tides read_tides(const PhysicsInput& input, const PhysicsOptions& common, const 
   if (const std::string note = unknown_radius_note(input); !note.empty() && radius < 10 * t.body.radius)
     found.notes.push_back(note);
   if (radius < t.centre.radius)
-    found.notes.push_back(
-        fmt::format("an orbit of this radius runs inside the {}, which is taken for a point", t.centre.name));
+    found.notes.push_back(fmt::format(
+        "an orbit of this radius runs inside the {}, whose radius is {:g} km and which is taken for a point",
+        t.centre.name, t.centre.radius / 1e3));
   return t;
 }
 
@@ -192,7 +196,9 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
 
 Solve add_tides(CLI::App& command, Common&) {
   const auto options = std::make_shared<Options>();
-  command.add_option("--orbit", options->orbit, "Radius of the circular orbit: 6771km, 1.1R_earth, 1au")
+  command
+      .add_option("--orbit", options->orbit,
+                  "Radius of the circular orbit: 6771km, 1.1R_earth (R_earth is 6371 km, the earth's mean radius), 1au")
       ->type_name("RADIUS")
       ->required();
   command.add_option("--mass", options->mass, "What it is about, a point: earth, moon, sun, or a mass: 6e24kg")
@@ -208,7 +214,7 @@ Solve add_tides(CLI::App& command, Common&) {
   command
       .add_option("--order", options->order, fmt::format("Highest degree of the multipoles; default {}", default_order))
       ->type_name("L")
-      ->check(CLI::Range(2, 64));
+      ->check(in_range(2, 64));
   command.add_option("--spin", options->spin, "How fast it spins at first, about C: whether it is caught")
       ->type_name("RATE");
   command

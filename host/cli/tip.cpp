@@ -155,6 +155,25 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
   return table;
 }
 
+// A roll after the other; on fine bodies there are many.
+Table rolls_table(const Attitude& attitude, const std::string& length) {
+  Table table{"rolls",
+              "how it rolled to rest",
+              {{"over"},
+               {"vertex", "", false},
+               {"second_vertex", "", false},
+               {"angle_deg", "degrees"},
+               {"barycentre_height_before", length},
+               {"barycentre_height_after", length}},
+              {}};
+  for (const physics::Roll& roll : attitude.rolls) {
+    const bool edge = roll.over.size() == 2;
+    table.rows.push_back({std::string(edge ? "edge" : "corner"), double(roll.over[0]),
+                          edge ? Value(double(roll.over[1])) : Value(), roll.angle * degrees, roll.before, roll.after});
+  }
+  return table;
+}
+
 Table patch_table(const Stance& stance, const std::string& length) {
   Table table{"contact_patch", "corners of the contact patch", {{"x", length}, {"y", length}, {"z", length}}, {}};
   for (const Vec3& p : stance.contact.patch) table.rows.push_back({p.x(), p.y(), p.z()});
@@ -170,6 +189,7 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
       {"body", "body", input.full_is},
       {"attitude", "stands", std::string(options.as_modelled ? "as modelled" : "settled")},
       {"settle_angle_deg", "turned to settle by", stance.attitude.angle * degrees, "degrees"},
+      {"settle_rolls", "rolls until it rests", double(stance.attitude.rolls.size())},
       {"support_points", "vertices that touch the ground", double(stance.contact.support.size())},
       {"over_patch", "barycentre over the contact patch", !stance.held},
       {"mass_kg", "mass", input.metric ? Value(stance.body.mass) : Value(), "kg"},
@@ -205,6 +225,25 @@ bool narrow(const Stance& stance) {
   return across < 0.05 * (stance.body.barycentre.y() - stance.contact.ground);
 }
 
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string settled_note(const Attitude& attitude) {
+  const auto& rolls = attitude.rolls;
+  const auto corners = std::size_t(
+      std::count_if(rolls.begin(), rolls.end(), [](const physics::Roll& roll) { return roll.over.size() == 1; }));
+  return fmt::format(
+      "settled: from the attitude as modelled it rolled over {} and {} of its hull, each time the one nearest to the "
+      "point below its barycentre, until that was over a facet; coordinates are those of the body turned by all these "
+      "rolls, {:.6g} degrees about their origin{}",
+      counted(corners, "corner"), counted(rolls.size() - corners, "edge"), attitude.angle * degrees,
+      std::abs(attitude.heading) > 1e-9
+          ? fmt::format(" (the least turn to the same facet, by {:.6g} degrees, has a heading {:.4g} degrees away)",
+                        attitude.least_angle * degrees, std::abs(attitude.heading) * degrees)
+          : "");
+}
+
 void add_notes(const Stood& stood, const TipInput& input, const Options& options, Findings& found) {
   const Stance& stance = stood.stance;
   if (!input.metric)
@@ -213,11 +252,7 @@ void add_notes(const Stood& stood, const TipInput& input, const Options& options
   if (!options.as_modelled && stance.attitude.angle == 0)
     found.notes.push_back("settled: it stands as modelled, its barycentre over a facet of its hull");
   else if (!options.as_modelled)
-    found.notes.push_back(
-        fmt::format("settled: it rolled down from the attitude as modelled to where its barycentre is "
-                    "over a facet of its hull; coordinates are those of the body turned by {:.6g} "
-                    "degrees about their origin",
-                    stance.attitude.angle * degrees));
+    found.notes.push_back(settled_note(stance.attitude));
   if (stance.attitude.balanced)
     found.notes.push_back(
         "on the way it stood on a corner or an edge in balance; it was let fall to the right, or off the "
@@ -290,7 +325,7 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
   const PushPlan plan = plan_push(options.push);
   if (!options.plot.empty()) {
     check_tip_plot(options.plot);
-    for (const std::string& file : input_files(common.body)) refuse_same_file(file, options.plot);
+    for (const std::string& file : input_files(common.body)) refuse_mesh_as_output(file, options.plot);
   }
   TipInput input = load_tip_input(common, options.choice, program);
   if (!input.metric && (plan.profile || plan.punch_duration || !options.plot.empty()))
@@ -313,6 +348,8 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
   if (!options.plot.empty() && !(body.balance > 0))
     throw Error(Fault::bad_argument, "--plot: any push tips this body, so there is no boundary to draw");
   found.tables.insert(found.tables.begin(), patch_table(stood.stance, length));
+  if (!stood.stance.attitude.rolls.empty())
+    found.tables.insert(found.tables.begin(), rolls_table(stood.stance.attitude, length));
   found.tables.push_back(orders_table(input, options, how, stood, length, monitor));
   monitor.clear();
   if (common.paper()) {
@@ -349,14 +386,14 @@ Solve add_tip(CLI::App& command, Common& common) {
   command
       .add_option("--lmax", options->choice.lmax,
                   "With --order: degree of a mesh's expansion (the largest order, 64 at least)")
-      ->check(CLI::Range(0, largest_surface_degree))
+      ->check(in_range(0, largest_surface_degree))
       ->type_name("L");
   command
       .add_option(
           "--resolution", options->choice.resolution,
           "Vertices of rebuilt bodies lie on 2 N + 1 rings (N: four times the order, 128 at least, 256 at most or "
           "the order)")
-      ->check(CLI::Range(1, largest_grid_degree))
+      ->check(in_range(1, largest_grid_degree))
       ->type_name("N");
   command.add_option("--mesh", options->choice.mesh, "Of a file: the true body")->type_name("MESH");
   command

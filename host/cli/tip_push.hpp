@@ -5,7 +5,7 @@
 #include "host/physics/push.hpp"
 #include "host/physics/tip.hpp"
 
-#include <CLI/CLI.hpp>
+#include "host/cli/command_line.hpp"
 
 #include <optional>
 #include <string>

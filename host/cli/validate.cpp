@@ -69,11 +69,9 @@ void add_validate(CLI::App& app, Common& common) {
   command->add_option("--origin", options->body.origin, "As in expand: com (centre of mass), mesh, or X,Y,Z")
       ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
-      ->check(CLI::Range(0, largest_degree))
+      ->check(in_range(0, largest_degree))
       ->capture_default_str();
-  command->add_option("--cut-off", options->cut_off, "As in expand")
-      ->check(CLI::Range(0.0, 1e-3))
-      ->capture_default_str();
+  command->add_option("--cut-off", options->cut_off, "As in expand")->check(in_range(0.0, 1e-3))->capture_default_str();
   add_common_options(*command, common);
   command->callback([options, &common] { run(*options, common); });
 }

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/flow/fixed_steps.hpp"
+#include "host/mesh/convex_hull.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/subdivide.hpp"
 #include "host/mesh/triangle_surface.hpp"
@@ -51,6 +52,16 @@ SphereCoefficients with_means(const SurfaceExpansion& expansion) {
 }
 
 } // namespace
+
+double monopole_at_large_times(std::span<const Vec3> vertices, const Vec3& origin) {
+  const std::vector<Face> hull = convex_hull(vertices);
+  if (hull.empty())
+    throw Error(Fault::bad_argument, "all vertices lie in one plane: their hull has no corners with normal cones");
+  const std::vector<double> solid = normal_cone_solid_angles(vertices, hull);
+  double sum = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) sum += (vertices[i] - origin).norm() * solid[i];
+  return sum / std::sqrt(4 * std::numbers::pi);
+}
 
 SphereMap direction_map(std::span<const Vec3> positions, const Vec3& origin) {
   SphereMap map;

@@ -15,6 +15,11 @@ namespace cowgpu {
 /// origin itself.
 SphereMap direction_map(std::span<const Vec3> positions, const Vec3& origin);
 
+/// f_00 of f_r = |F - origin| (orthonormal) that the flow's map tends to as the time grows: then every direction holds the
+/// vertex that is farthest along it, a corner of the convex hull, so that f_00 = sum over these of |v - origin| times the
+/// solid angle of its normal cone, over sqrt(4 pi). Exact but for rounding. Throws Error(bad_argument) for vertices in one plane.
+double monopole_at_large_times(std::span<const Vec3> vertices, const Vec3& origin);
+
 /// The paper's recipe: the mesh's vertices along their normals for `time` in steps of 0.05 (host/flow/fixed_steps.hpp), seen
 /// from the origin. Expand with ExpandSurfaceOptions::closest_point and without signed_dphi.
 SphereMap paper_flow_map(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor,

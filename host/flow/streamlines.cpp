@@ -2,13 +2,13 @@
 
 #include "host/error.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/number.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 namespace cowgpu {
@@ -151,19 +151,14 @@ Plane parse_plane(const std::string& text) {
   if (text == "yz") return {Vec3::UnitX(), 0};
   if (text == "xy") return {Vec3::UnitZ(), 0};
   if (text == "xz") return {-Vec3::UnitY(), 0};
-  std::array<double, 4> numbers{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto [next, error] = std::from_chars(at, end, numbers[i]);
-    if (error != std::errc() || !std::isfinite(numbers[i]) || (i < 3 ? next == end || *next != ',' : next != end))
-      throw Error(Fault::bad_argument,
-                  fmt::format("--plane {}: it must be yz, xy, xz, or four numbers NX,NY,NZ,D for the points with "
-                              "NX x + NY y + NZ z = D",
-                              text));
-    at = next + 1;
-  }
-  const Plane plane{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+  const auto numbers = read_numbers<4>(text);
+  if (!numbers)
+    throw Error(Fault::bad_argument,
+                fmt::format("--plane {}: it must be yz, xy, xz, or four numbers NX,NY,NZ,D for the points with "
+                            "NX x + NY y + NZ z = D",
+                            text));
+  const auto [x, y, z, d] = *numbers;
+  const Plane plane{{x, y, z}, d};
   const double length = plane.normal.norm();
   if (!(length > 1e-100 && length < 1e100))
     throw Error(Fault::bad_argument, fmt::format("--plane {}: a normal of length {} gives no plane", text, length));

@@ -3,11 +3,11 @@
 #include "host/io/coefficient_metadata.hpp"
 #include "host/io/shown.hpp"
 #include "host/io/words.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 namespace cowgpu {
 
@@ -34,24 +34,21 @@ std::optional<double> WordLines::number_in(std::string_view word) {
   std::string text(word);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
-  return finite_number(text);
+  return read_number(text);
 }
 
 double WordLines::real(std::string_view word) const {
-  if (const auto value = number_in(word)) return *value;
-  if (const auto value = to_number(word))
-    fail(Fault::file_syntax,
-         fmt::format("'{}': every value must be a finite number that has a place in a double", shown(word)));
-  fail(Fault::file_syntax, fmt::format("a number expected, found '{}'", shown(word)));
+  const auto value = number_in(word);
+  if (!value) fail(Fault::file_syntax, fmt::format("a number expected; '{}' {}", shown(word), not_a_number(word)));
+  return *value;
 }
 
 int WordLines::whole(std::string_view word, const char* what, int largest) const {
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < 0 || value > largest)
+  const auto value = read_whole(word, 0, largest);
+  if (!value)
     fail(Fault::file_syntax,
          fmt::format("{} is '{}'; whole numbers from 0 to {} are possible", what, shown(word), largest));
-  return value;
+  return *value;
 }
 
 void WordLines::judge_end(bool ours, std::vector<std::string>& notes) const {

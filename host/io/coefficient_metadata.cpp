@@ -3,7 +3,7 @@
 #include "host/error.hpp"
 #include "host/io/number.hpp"
 #include "host/io/shown.hpp"
-#include "host/io/words.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
@@ -60,7 +60,7 @@ public:
     if (const MetadataText* at = find(key)) into = one_line(at->text);
   }
   double number(const std::string& key, const MetadataText& at, std::string_view word) const {
-    const auto value = finite_number(word);
+    const auto value = read_number(word);
     if (!value) fail(at, fmt::format("{} is '{}', and that is no finite number", key, shown(word)));
     return *value;
   }
@@ -228,7 +228,7 @@ bool take_metadata(const Metadata& metadata, const std::string& file, Coefficien
 double remark_number(const CoefficientSet& set, const std::string& file, std::string_view word, double otherwise) {
   for (const auto& [key, text] : set.remarks) {
     if (key != word) continue;
-    const auto value = finite_number(text);
+    const auto value = read_number(text);
     if (!value)
       throw Error(Fault::file_syntax,
                   fmt::format("{}: the remark {} is '{}', and that is no finite number", file, shown(word, 60), shown(text)));

@@ -42,7 +42,7 @@ void take_comment(std::string_view line, std::size_t number, Metadata& metadata)
 bool take_metadata(const Metadata& metadata, const std::string& file, CoefficientSet& set);
 
 /// A remark of a file that is a number, or `otherwise` where the file has no such remark. Throws Error(file_syntax) that names
-/// file and remark where its text is no finite number (finite_number()).
+/// file and remark where its text is no finite number (read_number()).
 double remark_number(const CoefficientSet& set, const std::string& file, std::string_view word, double otherwise);
 
 /// "FILE:LINE", or "FILE" where there is no line.

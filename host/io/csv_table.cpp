@@ -3,11 +3,11 @@
 #include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
 #include "host/io/words.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 namespace cowgpu {
@@ -43,11 +43,10 @@ void read_row(CsvTable& table, std::string_view line, std::size_t number) {
   for (;; ++found) {
     const auto comma = line.find(',');
     const std::string_view word = trimmed(line.substr(0, comma));
-    const auto value = finite_number(word);
-    if (!value && to_number(word))
+    const auto value = read_number(word);
+    if (!value)
       table.fail(Fault::file_syntax, number,
-                 fmt::format("'{}': every value must be a finite number that has a place in a double", shown(word)));
-    if (!value) table.fail(Fault::file_syntax, number, fmt::format("a number expected, found '{}'", shown(word)));
+                 fmt::format("a finite number expected; '{}' {}", shown(word), not_a_number(word)));
     if (found < table.columns.size()) table.values.push_back(*value);
     if (comma == std::string_view::npos) break;
     line.remove_prefix(comma + 1);
@@ -77,12 +76,11 @@ const CsvTable::Attribute& CsvTable::attribute(const std::string& key) const {
 
 int CsvTable::integer(const std::string& key, int smallest, int largest) const {
   const Attribute& a = attribute(key);
-  int value = 0;
-  const auto [end, error] = std::from_chars(a.text.data(), a.text.data() + a.text.size(), value);
-  if (error != std::errc() || end != a.text.data() + a.text.size() || value < smallest || value > largest)
+  const auto value = read_whole(a.text, smallest, largest);
+  if (!value)
     fail(Fault::file_syntax, a.line,
          fmt::format("{} is '{}'; from {} to {} are possible", key, shown(a.text), smallest, largest));
-  return value;
+  return *value;
 }
 
 CsvTable read_csv(const std::filesystem::path& path) {

@@ -3,13 +3,12 @@
 #include "host/error.hpp"
 #include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -36,14 +35,6 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-std::optional<double> number_of(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || word.empty()) return std::nullopt;
-  return value;
-}
-
 } // namespace
 
 std::vector<Vec3> read_points(const std::filesystem::path& path) {
@@ -62,7 +53,7 @@ std::vector<Vec3> read_points(const std::filesystem::path& path) {
     const auto words = words_of(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
     if (words.empty()) continue;
-    if (std::exchange(first, false) && std::none_of(words.begin(), words.end(), number_of)) {
+    if (std::exchange(first, false) && std::none_of(words.begin(), words.end(), read_number)) {
       for (std::size_t c = 0; c < 3; ++c) {
         const auto found = std::find(words.begin(), words.end(), std::string_view("xyz").substr(c, 1));
         if (found == words.end()) fail(fmt::format("a line of names without one that is {}", "xyz"[c]));
@@ -74,9 +65,9 @@ std::vector<Vec3> read_points(const std::filesystem::path& path) {
     for (std::size_t c = 0; c < 3; ++c) {
       if (columns[c] >= words.size())
         fail(fmt::format("x, y and z expected, found {} number{}", words.size(), words.size() == 1 ? "" : "s"));
-      const auto value = number_of(words[columns[c]]);
-      if (!value || !std::isfinite(*value))
-        fail(fmt::format("a finite number expected, found '{}'", shown(words[columns[c]])));
+      const std::string_view word = words[columns[c]];
+      const auto value = read_number(word);
+      if (!value) fail(fmt::format("a finite number expected; '{}' {}", shown(word), not_a_number(word)));
       point[Eigen::Index(c)] = *value;
     }
     points.push_back(point);

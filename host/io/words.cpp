@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 
 namespace cowgpu {
@@ -114,14 +113,6 @@ std::optional<double> to_number(std::string_view word) {
     value = static_cast<double>(wide);
   }
   if (result.ec != std::errc() || result.ptr != word.data() + word.size()) return {};
-  return value;
-}
-
-std::optional<double> finite_number(std::string_view word) {
-  word = without_plus(word);
-  double value = 0;
-  const auto result = read(word, value);
-  if (result.ec != std::errc() || result.ptr != word.data() + word.size() || !std::isfinite(value)) return {};
   return value;
 }
 

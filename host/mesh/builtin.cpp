@@ -3,6 +3,7 @@
 #include "host/error.hpp"
 #include "host/mesh/builtin_cow.hpp"
 #include "host/mesh/subdivide.hpp"
+#include "host/number.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -126,16 +127,6 @@ private:
   std::string spec_;
 };
 
-/// The whole of `text` as a number, or nothing.
-template <typename Number>
-std::optional<Number> parse(std::string_view text) {
-  Number value{};
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return value;
-}
-
 std::string quoted(std::string_view text) {
   return '"' + std::string(text) + '"';
 }
@@ -164,8 +155,8 @@ Sizes read_sizes(std::string_view text, const Kind& kind, const Refusal& refuse)
     const std::string_view word = text.substr(0, comma);
     more = comma != std::string_view::npos;
     if (more) text.remove_prefix(comma + 1);
-    const std::optional<double> size = parse<double>(word);
-    if (!size || !(*size >= smallest_size && *size <= largest_size)) // also refuses NaN
+    const std::optional<double> size = read_number(word);
+    if (!size || !(*size >= smallest_size && *size <= largest_size))
       refuse("the size " + quoted(word) + " is not a number from 1e-30 to 1e30.", use);
     sizes.push_back(*size);
   }
@@ -181,8 +172,8 @@ Sizes read_sizes(std::string_view text, const Kind& kind, const Refusal& refuse)
 }
 
 unsigned read_level(std::string_view text, const Kind& kind, const Refusal& refuse) {
-  const std::optional<unsigned> level = parse<unsigned>(text);
-  if (!level || *level > kind.max_level)
+  const std::optional<unsigned> level = read_whole(text, 0U, kind.max_level);
+  if (!level)
     refuse("the level " + quoted(text) + " is out of range or no number; each level has four times the faces.",
            "The level of a " + kind.help.name + " is a whole number from 0 to " + std::to_string(kind.max_level) + ".");
   return *level;

@@ -83,28 +83,31 @@ std::vector<ErratumNumber> errata_numbers() {
   int degree = 0;
   for (const PaperRow& row : paper_harmonic_table()) degree = std::max(degree, row.l);
   const double printed_time = (13.787e9 - 12e6) * 365 * 86400;
-  return {
-      {1, "square of the paper's tensor in kg^2 m^4", square, paper::square_si},
-      {1, "power of it in erg/s", double(quadrupole_power(square, 1)) * 1e7, paper::power_erg_per_s},
-      {2, "factor of G/c^5 sum |Q'''_2m|^2", spherical_factor(paper_quadrupole()), 3 / (8 * pi)},
-      {3, "r V/M of a point mass", far, far * std::sqrt(1 / (4 * pi))},
-      {4, "integral of |Y_22|^2", norm_of_y22(), norm_of_y22() * 120 / 5},
-      {7, "deficit with the paper's tensors", deficit(paper_quadrupole(), paper::inertia[3]), paper::deficit},
-      {7, "deficit with the paper's rounding", printed_time / (2 * paper::timescale_s), paper::deficit},
-      {10, "highest degree of the harmonic table", double(degree), 2},
-      {18, "unit of length in m", paper::length / paper::box_length, paper::length_unit_m},
-      {18, "power at fixed density, over the paper's", std::pow(paper::length / paper::box_length / length, 10), 1}};
+  return {{1, "square of the paper's tensor in kg^2 m^4", square, paper::square_si},
+          {1, "power of it in erg/s", double(quadrupole_power(square, 1)) * 1e7, paper::power_erg_per_s},
+          {2, "factor of G/c^5 sum |Q'''_2m|^2", spherical_factor(paper_quadrupole()), 3 / (8 * pi)},
+          {3, "r V/M of a point mass", far, far * std::sqrt(1 / (4 * pi))},
+          {4, "integral of |Y_22|^2", norm_of_y22(), norm_of_y22() * 120 / 5},
+          {7, "deficit with the paper's tensors", deficit(paper_quadrupole(), paper::inertia[3]), paper::deficit},
+          {7, "deficit with the paper's rounding", printed_time / (2 * paper::timescale_s), paper::deficit},
+          {10, "highest degree of the harmonic table", double(degree), 2}};
 }
 
 std::vector<ErratumNumber> errata_numbers(const Body& benchmark) {
   const MassTensors tensors = about_centre(mass_tensors(benchmark));
   const Vec3 p = pivot(benchmark);
+  const RawMesh& mesh = benchmark.surface.mesh();
+  const double unit_of_length = paper::length / bounding_box(mesh.vertices, mesh.faces).longest_side();
   return {{5, "Im Q_22", spherical_quadrupole(tensors.quadrupole)[2].imag(), paper::q22_im},
           {7, "deficit with exact tensors", deficit(tensors.quadrupole, tensors.inertia()(1, 1)), paper::deficit},
           {11, "lever of the lowest hoof about x", p.z(), std::hypot(p.x(), p.z())},
           {14, "volume", benchmark.volume, paper::volume},
           {14, "mass in kg", benchmark.volume * mass, paper::mass_kg},
-          {14, "Q_00", tensors.mass / std::sqrt(4 * pi), paper::q00}};
+          {14, "Q_00", tensors.mass / std::sqrt(4 * pi), paper::q00},
+          {18, "length of the mesh", paper::length / unit_of_length, paper::box_length},
+          {18, "unit of length in m", unit_of_length, paper::length_unit_m},
+          {18, "power at fixed density, over that of 2.39 m", std::pow(unit_of_length / length, 10), 1},
+          {18, "mass in kg", benchmark.volume * 1000 * std::pow(unit_of_length, 3), paper::mass_kg}};
 }
 
 } // namespace cowgpu::physics

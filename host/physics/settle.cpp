@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 #include <utility>
 
 namespace cowgpu::physics {
@@ -101,6 +102,12 @@ Eigen::Matrix3d least_rotation(const Vec3& from, const Vec3& to) {
   return Eigen::Matrix3d::Identity() + skew + skew * skew / (1 + cosine);
 }
 
+double angle_of(const Eigen::Matrix3d& rotation) {
+  const Vec3 twice_sine(rotation(2, 1) - rotation(1, 2), rotation(0, 2) - rotation(2, 0),
+                        rotation(1, 0) - rotation(0, 1));
+  return std::atan2(twice_sine.norm(), rotation.trace() - 1);
+}
+
 [[noreturn]] void no_facet(const std::string& why) {
   throw Error(Fault::cannot_stand,
               fmt::format("the body cannot stand: {}; a barycentre inside the convex hull of the vertices is needed, "
@@ -109,14 +116,26 @@ Eigen::Matrix3d least_rotation(const Vec3& from, const Vec3& to) {
 }
 
 // The body on its way down: r = vertices - b.
-struct Roll {
+struct Rolling {
   std::vector<Vec3> r;
   double size = 0;
   Vec3 down = -Vec3::UnitY();
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity(); // of all rolls so far: brings `down` to -y
 
-  std::vector<std::size_t> touching_ground() const {
+  // Rolls on to another direction: about the axis at right angles to both, which is level.
+  void turn_to(const Vec3& direction) {
+    rotation = least_rotation(rotation * direction, -Vec3::UnitY()) * rotation;
+    down = direction;
+  }
+
+  double height() const {
     double height = -std::numeric_limits<double>::infinity();
     for (const Vec3& v : r) height = std::max(height, down.dot(v));
+    return height;
+  }
+
+  std::vector<std::size_t> touching_ground() const {
+    const double height = this->height();
     if (!(height > touching * size)) no_facet("its barycentre is not above what it stands on");
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < r.size(); ++i)
@@ -124,8 +143,8 @@ struct Roll {
     return found;
   }
 
-  // Turns `down` towards `way` until a vertex that is not in `touch` comes to the height of `pivot`.
-  void tip(const Vec3& way, std::size_t pivot, const std::vector<std::size_t>& touch) {
+  // Turns `down` towards `way` until a vertex that is not in `touch` comes to the height of `pivot`; the angle.
+  double tip(const Vec3& way, std::size_t pivot, const std::vector<std::size_t>& touch) {
     double least = std::numeric_limits<double>::infinity();
     auto known = touch.begin();
     for (std::size_t i = 0; i < r.size(); ++i) {
@@ -137,7 +156,8 @@ struct Roll {
       least = std::min(least, std::atan2(-down.dot(d), way.dot(d)));
     }
     if (!(least < std::numbers::pi / 2)) no_facet("it rolls over its last vertex");
-    down = (std::cos(least) * down + std::sin(least) * way).normalized();
+    turn_to((std::cos(least) * down + std::sin(least) * way).normalized());
+    return least;
   }
 };
 
@@ -152,40 +172,54 @@ Vec3 facet_normal(const std::vector<Vec3>& corners, const Vec3& near) {
 } // namespace
 
 Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre, const Monitor& monitor) {
-  Roll roll;
+  Rolling body;
   for (const Vec3& v : vertices) {
-    roll.r.push_back(v - barycentre);
-    roll.size = std::max(roll.size, roll.r.back().norm());
+    body.r.push_back(v - barycentre);
+    body.size = std::max(body.size, body.r.back().norm());
   }
-  if (!(roll.size > 0) || !std::isfinite(roll.size)) no_facet("it has no size");
-  const double noise = touching * roll.size;
+  if (!(body.size > 0) || !std::isfinite(body.size)) no_facet("it has no size");
+  const double noise = touching * body.size;
   Attitude attitude;
-  for (;; ++attitude.steps) {
+  std::set<std::vector<std::size_t>> edges; // rolled over
+  for (;;) {
     check_stop(monitor);
-    if (std::size_t(attitude.steps) > 4 * roll.r.size() + 64) no_facet("it rolls on and on");
-    const std::vector<std::size_t> touch = roll.touching_ground();
-    const auto [first, second] = level_axes(roll.down);
+    if (attitude.rolls.size() > 8 * body.r.size() + 64) no_facet("it rolls on and on");
+    const std::vector<std::size_t> touch = body.touching_ground();
+    const auto [first, second] = level_axes(body.down);
     std::vector<Vec2> flat;
-    for (const std::size_t i : touch) flat.emplace_back(first.dot(roll.r[i]), second.dot(roll.r[i]));
+    for (const std::size_t i : touch) flat.emplace_back(first.dot(body.r[i]), second.dot(body.r[i]));
     const std::vector<std::size_t> corner = hull(flat, noise);
     std::vector<Vec2> polygon;
     for (const std::size_t i : corner) polygon.push_back(flat[i]);
     Place place = place_of_origin(polygon, noise);
-    if (place.margin > noise) {
+    Roll roll;
+    for (const std::size_t i : place.nearest) roll.over.push_back(touch[corner[i]]);
+    std::sort(roll.over.begin(), roll.over.end());
+    const bool again = roll.over.size() == 2 && edges.contains(roll.over);
+    if (place.margin > noise || (again && corner.size() > 2)) {
       std::vector<Vec3> corners;
-      for (const std::size_t i : corner) corners.push_back(roll.r[touch[i]]);
-      roll.down = facet_normal(corners, roll.down);
+      for (const std::size_t i : corner) corners.push_back(body.r[touch[i]]);
+      body.turn_to(facet_normal(corners, body.down));
       break;
     }
     if (std::abs(place.margin) <= noise) {
       attitude.balanced = true;
       if (place.outward.isZero(0)) place.outward = {1, 0};
     }
+    if (roll.over.size() == 2) edges.insert(roll.over);
     const Vec3 way = place.outward.x() * first + place.outward.y() * second;
-    roll.tip(way, touch[corner[place.nearest[0]]], touch);
+    roll.before = body.height();
+    roll.angle = body.tip(way, touch[corner[place.nearest[0]]], touch);
+    roll.after = body.height();
+    attitude.rolls.push_back(std::move(roll));
   }
-  attitude.rotation = least_rotation(roll.down, -Vec3::UnitY());
-  attitude.angle = std::atan2(roll.down.cross(Vec3::UnitY()).norm(), -roll.down.y());
+  // Newton's step to the orthogonal matrix next to it: many rolls leave rounding.
+  const Eigen::Matrix3d& r = body.rotation;
+  attitude.rotation = r * (3 * Eigen::Matrix3d::Identity() - r.transpose() * r) / 2;
+  attitude.angle = angle_of(attitude.rotation);
+  attitude.least_angle = std::atan2(body.down.cross(Vec3::UnitY()).norm(), -body.down.y());
+  const Eigen::Matrix3d about_y = attitude.rotation * least_rotation(body.down, -Vec3::UnitY()).transpose();
+  attitude.heading = std::atan2(about_y(0, 2) - about_y(2, 0), about_y(0, 0) + about_y(2, 2));
   return attitude;
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace cowgpu::physics {
@@ -79,13 +80,20 @@ Libration libration(const PrincipalAxes& principal, const Orbit& orbit, const st
   Libration found;
   found.axes = axes;
   if (pitch > 0) found.pitch = orbit.rate * std::sqrt(pitch);
-  if (pitch < 0 || c < 0 || b < 0 || discriminant < 0) {
-    found.stability = Stability::unstable;
-    return found;
+  if (discriminant >= 0) {
+    // The two values of -s^2, without cancellation; those above 0 oscillate, in an unstable attitude too.
+    const double larger = (b + std::copysign(std::sqrt(discriminant), b)) / 2, other = larger != 0 ? c / larger : 0;
+    const auto rate = [&](double square) { return square > 0 ? orbit.rate * std::sqrt(square) : 0; };
+    found.roll_yaw = {rate(std::min(larger, other)), rate(std::max(larger, other))};
+  } else {
+    // s^2 = -b/2 +- i sqrt(-discriminant)/2, of modulus sqrt(c): all four s have the same |Im s|.
+    const double root = std::sqrt(c), twice = root + b / 2 > 0 ? root + b / 2 : -discriminant / 4 / (root - b / 2);
+    found.roll_yaw.fill(orbit.rate * std::sqrt(twice / 2));
   }
-  const double fast = (b + std::sqrt(discriminant)) / 2; // -s^2
-  if (fast > 0) found.roll_yaw = {orbit.rate * std::sqrt(c / fast), orbit.rate * std::sqrt(fast)};
-  if (pitch > 0 && c > 0) found.stability = kx > 0 ? Stability::lagrange : Stability::debra_delp;
+  if (pitch < 0 || c < 0 || b < 0 || discriminant < 0)
+    found.stability = Stability::unstable;
+  else if (pitch > 0 && c > 0)
+    found.stability = kx > 0 ? Stability::lagrange : Stability::debra_delp;
   return found;
 }
 

@@ -43,8 +43,10 @@ const char* name(Stability stability);
 struct Libration {
   std::array<int, 3> axes = {0, 1, 2}; ///< which principal axis, by growing moment, lies along x, y, z
   Stability stability = Stability::neutral;
-  double pitch = 0;                    ///< rad/s; 0: none
-  std::array<double, 2> roll_yaw = {}; ///< rad/s, the slower first; 0: none
+  double pitch = 0; ///< rad/s; 0: it does not oscillate
+  /// |Im s| in rad/s, the slower first; 0: no such oscillation. An unstable attitude has those whose s^2 is below 0 or complex:
+  /// the latter grow or fade while they oscillate.
+  std::array<double, 2> roll_yaw = {};
 };
 
 /// About the attitude in which principal axis axes[i] lies along axis i of the orbit frame.

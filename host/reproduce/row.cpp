@@ -1,21 +1,19 @@
 #include "host/reproduce/row.hpp"
 
 #include "host/error.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 namespace cowgpu::reproduce {
 namespace {
 
 double number(std::string_view text) {
-  double value = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
-    throw Error(Fault::bad_argument, fmt::format("\"{}\" is no decimal number", text));
-  return value;
+  const auto value = read_number(text);
+  if (!value) throw Error(Fault::bad_argument, fmt::format("\"{}\" {}", text, not_a_number(text)));
+  return *value;
 }
 
 std::string shown(const std::vector<std::string>& parts) {
@@ -40,9 +38,7 @@ double last_digit(std::string_view printed) {
   (void)number(printed);
   const std::size_t exponent_at = printed.find_first_of("eE");
   const std::string_view digits = printed.substr(0, exponent_at);
-  int exponent = exponent_at == std::string_view::npos
-                     ? 0
-                     : int(number(printed.substr(exponent_at + (printed.at(exponent_at + 1) == '+' ? 2 : 1))));
+  int exponent = exponent_at == std::string_view::npos ? 0 : int(number(printed.substr(exponent_at + 1)));
   if (const std::size_t point = digits.find('.'); point != std::string_view::npos)
     exponent -= int(digits.size() - point - 1);
   return number(fmt::format("1e{}", exponent));
