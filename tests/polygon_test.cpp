@@ -133,12 +133,13 @@ TEST_CASE("concave polygons of every format have their area", "[polygon][readers
   Polygon star;
   for (int k = 0; k < 10; ++k)
     star.push_back(Vec3(std::cos(M_PI * k / 5), std::sin(M_PI * k / 5), 0) * (k % 2 == 0 ? 2 : 0.8));
+  const Polygon teeth = comb(20);
+  double length = 0;
+  for (std::size_t i = 0; i < teeth.size(); ++i) length += (teeth[i] - teeth[(i + 1) % teeth.size()]).norm();
   const struct {
     Polygon polygon;
     double volume, area;
-  } bodies[] = {{u_shape, 7, 30},
-                {star, 4.702282018, 23.726385213},
-                {comb(20), 20 + 20, 2 * 40 + 25 + 15 + 20 * (std::hypot(.5, 4) * 2)}};
+  } bodies[] = {{u_shape, 7, 30}, {star, 4.702282018, 23.726385213}, {teeth, area(teeth), 2 * area(teeth) + length}};
   for (const auto& body : bodies)
     for (const bool reversed : {false, true})
       for (std::size_t first = 0; first < body.polygon.size(); first += 3) {
@@ -162,8 +163,8 @@ TEST_CASE("distances from a U prism of polygons are those of the body, and it ha
   const TemporaryFolder folder;
   std::ofstream(folder / "u.obj") << prism_files(u_shape)[0];
   std::ofstream(folder / "points.csv") << "1.5,2,1.2\n1.5,2.5,1\n1.5,2,0.5\n0.5,0.5,0.9\n";
-  const ProgramRun run = run_program(
-      {"distance", folder / "u.obj", "--points", folder / "points.csv", "-o", folder / "d.csv", "--device", "cpu"});
+  const ProgramRun run =
+      run_program({"distance", folder / "u.obj", folder / "points.csv", "-o", folder / "d.csv", "--device", "cpu"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   std::ifstream table(folder / "d.csv");
