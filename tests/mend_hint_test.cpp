@@ -141,7 +141,7 @@ TEST_CASE("of meshes of many faces whole shells are looked at, and what is not i
   const auto one = notes_of(large);
   REQUIRE(one.size() == 1);
   CHECK(says(one, "was not looked at; `cowgpu inspect` looks"));
-  CHECK(says(notes_of(together(large, flipped(box({1, 1, 1}, {10, 0, 0})))), "1 (3.1 %) is subtracted; --orient"));
+  CHECK(says(notes_of(together(large, flipped(box({1, 1, 1}, {10, 0, 0})))), "1 (3.08 %) is subtracted; --orient"));
   const auto nested = notes_of(together(large, together(box({1, 1, 1}), box({1, 1, 1}, {8, 0, 0}))));
   CHECK(nested.size() == 2);
   CHECK(says(nested, "is counted twice or more often: 1 shell lies inside others"));
