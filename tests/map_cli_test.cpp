@@ -83,8 +83,8 @@ TEST_CASE("the harmonic map is polished unless told otherwise", "[map-cli]") {
     REQUIRE(run.exit_code == 0);
     return nlohmann::json::parse(run.out)["quality"]["shear"]["values"].back().get<double>();
   };
-  CHECK(shear({"--method", "harmonic"}) < 1.01);
-  CHECK(shear({"--method", "harmonic", "--polish"}) < 1.01);
+  CHECK(shear({"--method", "harmonic"}) < 1.03);
+  CHECK(shear({"--method", "harmonic", "--polish"}) < 1.03);
   CHECK(shear({"--method", "harmonic", "--no-polish"}) > 1.1);
   CHECK(shear({"--recipe", "paper"}) > 1.1);
 }

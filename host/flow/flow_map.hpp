@@ -38,7 +38,7 @@ struct LevelSetExpansion {
   LevelSetReport level_set;
   StarShapeTime star; ///< looked for even where the time is given
   double time = 0;    ///< T
-  /// [degree][field]: the largest over m of what a coefficient is off by. One and a half times the largest difference from two
+  /// [degree][field]: the largest over m of what a coefficient is off by. 1.4 times the largest difference from two
   /// turned grids of half the degree, or a third of what one of them differs by from a grid of a quarter, among the fields of
   /// one kind (lengths, angles) and the two degrees on either side; and
   /// what rounding does, what the bounds of the star-shape time leave open where the time is that, and `unsettled`. The means
