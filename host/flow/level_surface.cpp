@@ -371,8 +371,7 @@ LevelSurfaceError level_surface_error(DistanceField& field, const Vec3& low, con
       std::max(change(&Measures::volume), std::abs(fine.volume - report.sampled_volume) + report.sampled_chance);
   const double relative =
       report.sampled_volume > 0 ? fine.area * error.volume_error / report.sampled_volume : fine.area;
-  error.area_error = std::max(change(&Measures::area), relative) +
-                     3 * report.missed / level;
+  error.area_error = std::max(change(&Measures::area), relative) + 3 * report.missed / level;
   return error;
 }
 
