@@ -180,8 +180,8 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
   };
   result.expansion = expand_surface(finest, of_grid, backend, monitor, &result.report);
 
-  // On two grids of half the degree and one of a quarter. They are turned: an edge or a jump that runs along the rings or meridians of one grid, which
-  // refining it would not show, does not run along the others'.
+  // On two grids of half the degree and one of a quarter. They are turned: an edge or a jump that runs along the rings or
+  // meridians of one grid, which refining it would not show, does not run along the others'.
   const SphereCoefficients last = with_means(result.expansion);
   const auto coefficients_on = [&](double level, int degree, const EulerAngles& turn) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, degree);

@@ -27,9 +27,10 @@ struct LevelSetReport {
 /// it the closest point of the surface: x, y, z of F, [3][ring][longitude]. With the inflated body {d <= T} star-shaped about
 /// the origin (host/flow/star_shape.hpp) there is one such point; else this is one of several.
 ///
-/// The rays are those of the grid turned by `turn`, a rotation. By Newton's method in a bracket whose lower end has been seen inside the level set and whose upper end outside: the sign of
-/// d decides, by the winding number, except where the surface is nearer than T. A bracket that three steps do not halve is cut
-/// in its middle, so that every direction ends. `field` is the surface's, closed, box [low, high].
+/// The rays are those of the grid turned by `turn`, a rotation. By Newton's method in a bracket whose lower end has been seen
+/// inside the level set and whose upper end outside: the sign of d decides, by the winding number, except where the surface is
+/// nearer than T. A bracket that three steps do not halve is cut in its middle, so that every direction ends. `field` is the
+/// surface's, closed, box [low, high].
 ///
 /// Throws Error(bad_argument) for T <= 0, an origin that is not finite or not inside the level set, and what DistanceField
 /// throws.
