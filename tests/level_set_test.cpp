@@ -145,8 +145,12 @@ TEST_CASE("a body that is star-shaped as it is expands to its radial function, a
   CHECK(found.time < 1e-8);
   CHECK(found.expansion.coefficients.at(0, 0, 0).real() / std::sqrt(4 * std::numbers::pi) ==
         Approx(1.00210).margin(1.2e-4));
-  const ProgramRun run = run_program({"reconstruct", "builtin:box:1,2,3", "--of", "flow", "--order", "64", "--samples",
-                                      "200", "--device", "cpu", "--json"});
+  const TemporaryFolder folder;
+  REQUIRE(run_program({"expand", "builtin:box:1,2,3", "--of", "flow", "--flow-grid", "128", "--lmax", "64", "--device",
+                       "cpu", "-q", "-o", folder / "box.json"})
+              .exit_code == 0);
+  const ProgramRun run =
+      run_program({"reconstruct", folder / "box.json", "--order", "64", "--device", "cpu", "--json"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   CHECK(nlohmann::json::parse(run.out)["orders"][0]["volume"].get<double>() == Approx(6).epsilon(2e-3));

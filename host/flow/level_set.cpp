@@ -16,7 +16,7 @@ namespace cowgpu {
 namespace {
 
 constexpr std::size_t batch = 1 << 18;
-constexpr int most_passes = 200, careful_passes = 12;
+constexpr int most_passes = 200, careful_passes = 12, patient_passes = 30;
 constexpr double jump_angle = 0.05, jump_length = 0.02; // radians, diagonals
 
 /// One direction's search. Signed distance less the level, g, is below 0 at `low` and not below 0 at `high`, always.
@@ -94,7 +94,7 @@ private:
       const double slope = d > 0 ? sign * (places[k] - closest.point[k]).dot(ray.direction) / d : 0;
       (gap >= 0 ? ray.high : ray.low) = ray.radius;
       const bool pinned = ray.high - ray.low <= 4e-16 * outside_, last = pass + 1 == most_passes;
-      if (std::abs(gap) <= enough_ * std::clamp(10 * slope, 0.0, 1.0) || pinned || last) {
+      if (std::abs(gap) <= enough_ * std::clamp(100 * slope, 0.0, 1.0) || pinned || last) {
         ends.points[ray.at] = closest.point[k];
         found_.largest_residual = std::max(found_.largest_residual, std::abs(gap));
         found_.least_slope = std::min(found_.least_slope, slope);
@@ -152,7 +152,7 @@ private:
       const double b = from.dot(ray.direction), c = from.squaredNorm() - level_ * level_;
       next = std::max(ray.radius - met.gap, -b + std::sqrt(std::max(0.0, b * b - c)));
     }
-    const bool cut = pass >= careful_passes && pass % 3 == 2;
+    const bool cut = pass >= careful_passes && (pass % 3 == 2 || pass > patient_passes);
     if (cut && ray.high - ray.low > ray.width / 2) next = (ray.low + ray.high) / 2;
     if (cut) ray.width = ray.high - ray.low;
     return next > ray.low && next < ray.high ? next : (ray.low + ray.high) / 2;
