@@ -81,7 +81,9 @@ private:
 
   SphereMap map(const std::string& method) {
     Monitor& silent = silent_monitor();
-    return method == "stretch" ? stretch_map(surface_, {}, silent) : harmonic_map(surface_, {}, silent);
+    HarmonicOptions plain; // the disk's map: what its system costs
+    plain.polish = false;
+    return method == "stretch" ? stretch_map(surface_, {}, silent) : harmonic_map(surface_, plain, silent);
   }
 
   SurfaceExpansion expand(Path& path, const SphereMap& map, const ExpandSurfaceOptions& options,

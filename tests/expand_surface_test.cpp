@@ -267,6 +267,7 @@ TEST_CASE("turning the body turns the coefficients of its surface, over every ma
   HarmonicOptions plain, polished;
   plain.pole.rule = polished.pole.rule = Pole::Rule::vertex;
   plain.pole.vertex = polished.pole.vertex = 100;
+  plain.polish = false;
   polished.polish = true;
   const auto check = [&](const char* what, double figure,
                          const std::function<SphereMap(const ManifoldSurface&)>& make) {

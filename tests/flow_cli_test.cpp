@@ -119,6 +119,29 @@ TEST_CASE("a convex body is star-shaped as it is, and levels of it are written",
   CHECK(std::filesystem::exists(folder / "all" + "/inflated-0.5.ply"));
 }
 
+TEST_CASE("inflate says how well volumes are known, and what to do where they are not", "[flow-cli]") {
+  const ProgramRun coarse = run_on_cpu({"inflate", "builtin:box:1,2,3", "--levels", "0.01", "--cells", "4"});
+  INFO(coarse.out);
+  REQUIRE(coarse.exit_code == 0);
+  CHECK_THAT(coarse.out, Contains("note: the level 0.01 is found in cubes of") && Contains("take --cells 302"));
+  const json level = json_of({"inflate", "builtin:box:1,2,3", "--levels", "0.01", "--cells", "4"})["levels"][0];
+  const double t = 0.01, pi = std::numbers::pi, volume = 6 + 22 * t + 6 * pi * t * t + 4. / 3 * pi * t * t * t;
+  CHECK(level["volume_error"].get<double>() >= std::abs(level["volume"].get<double>() - volume));
+  const ProgramRun fine = run_on_cpu({"inflate", "builtin:box:1,2,3", "--levels", "0.5", "--cells", "64"});
+  CHECK_THAT(fine.out, !Contains("note:") && Contains(" +- "));
+}
+
+TEST_CASE("a map by the flow does not call itself one-to-one where its triangles fold", "[flow-cli]") {
+  for (const char* mesh : {"builtin:cow@2", "builtin:box:1,2,3@3", "builtin:ellipsoid:3,2,1@3"}) {
+    const ProgramRun run = run_on_cpu({"map", mesh, "--method", "flow", "--lmax", "8"});
+    INFO(run.out);
+    REQUIRE(run.exit_code == 0);
+    CHECK_THAT(run.out, Contains("every direction from the origin meets its surface once"));
+    const bool folds = run.out.find("flipped triangles        0\n") == std::string::npos;
+    CHECK(folds == (run.out.find("the map is one-to-one") == std::string::npos));
+  }
+}
+
 TEST_CASE("the star-shape time about another origin is another", "[flow-cli]") {
   const json far = json_of({"inflate", "builtin:box:1,1,1", "--star", "--origin", "3,0.5,0.5"});
   CHECK(far["origin_kind"] == "given");

@@ -159,6 +159,28 @@ TEST_CASE("a tetrahedron has a harmonic map", "[harmonic]") {
   }
 }
 
+TEST_CASE("the harmonic map keeps angles by default, and does not without polish", "[harmonic]") {
+  const auto body = manifold(builtin_mesh("ellipsoid:1,1,1.5@4"));
+  const SphereMap map = harmonic_map(body);
+  // In the triangles of a map that keeps angles there is shear of the first order in their size.
+  const auto coarse = manifold(builtin_mesh("ellipsoid:1,1,1.5@3"));
+  const double shear = judge(body, map, 8).shear[3], before = judge(coarse, harmonic_map(coarse), 8).shear[3];
+  CHECK(shear < 1.03);
+  CHECK(shear - 1 == Approx((before - 1) / 2).epsilon(0.1));
+  HarmonicOptions options;
+  options.pole = {Pole::Rule::vertex, 17, Vec3::Zero()};
+  check_at_most(furthest(harmonic_map(body, options).positions, map.positions), 1e-9, "another pole");
+  options.polish = false;
+  CHECK(judge(body, harmonic_map(body, options), 8).shear[3] > 1.1);
+  // What cannot be polished is not, unless it is asked for.
+  options.polish.reset();
+  options.weights = EdgeWeights::mean_value;
+  const SphereMap uneven = harmonic_map(body, options);
+  CHECK(std::any_of(uneven.notes.begin(), uneven.notes.end(),
+                    [](const std::string& note) { return note.starts_with("not polished"); }));
+  CHECK_FALSE(HarmonicOptions::paper_recipe().polish.value_or(true));
+}
+
 TEST_CASE("maps are refused for surfaces that are not one sphere", "[harmonic][smooth]") {
   CHECK(fault_of([] { harmonic_map(manifold(torus(12, 8))); }) == Fault::map_topology);
   CHECK(fault_of([] { smooth_map(manifold(torus(12, 8))); }) == Fault::map_topology);

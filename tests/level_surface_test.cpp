@@ -99,6 +99,34 @@ TEST_CASE("inflating changes the topology as the body's does", "[inflate]") {
   CHECK(hollow.audit.cavities == 1);
 }
 
+TEST_CASE("errors of volume and area are at least the true ones, on coarse cubes too", "[inflate]") {
+  struct Case {
+    Vec3 sides;
+    double level;
+    int cells;
+  };
+  for (const Case& c : {Case{{1, 2, 3}, 0.01, 4}, Case{{1, 2, 3}, 0.1, 16}, Case{{1, 2, 3}, 1, 32},
+                        Case{{1, 1, 0.01}, 0.02, 16}, Case{{0.03, 0.02, 3}, 0.05, 32}, Case{{1, 2, 3}, 0.001, 128}}) {
+    CAPTURE(c.sides.transpose(), c.level, c.cells);
+    // Turned, so that no plate lies along the cubes.
+    const RawMesh body = rotated(box(c.sides), Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix());
+    const double t = c.level, edges = c.sides.sum();
+    const double a = 2 * (c.sides.x() * c.sides.y() + c.sides.y() * c.sides.z() + c.sides.z() * c.sides.x());
+    const double volume = c.sides.prod() + a * t + pi * edges * t * t + 4. / 3 * pi * t * t * t;
+    const double area = a + 2 * pi * edges * t + 4 * pi * t * t;
+    const Level found = level_of(body, t, c.cells);
+    const auto backend = make_cpu_backend();
+    const auto field = backend->distance_field(body.vertices, body.faces);
+    const Box bounds = bounding_box(body.vertices, body.faces);
+    const LevelSurfaceError error =
+        level_surface_error(*field, bounds.min, bounds.max, t, c.cells, found.surface, found.report, silent_monitor());
+    CAPTURE(volume, error.volume, error.volume_error, area, error.area, error.area_error, found.report.missed);
+    CHECK(error.volume == Approx(found.audit.volume.value_or(0)).epsilon(1e-9));
+    CHECK(std::abs(error.volume - volume) <= error.volume_error);
+    CHECK(std::abs(error.area - area) <= error.area_error);
+  }
+}
+
 TEST_CASE("level sets that mean nothing are refused", "[inflate]") {
   const RawMesh mesh = box(Vec3(1, 1, 1));
   for (const double level :

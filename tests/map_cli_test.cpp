@@ -75,6 +75,20 @@ TEST_CASE("a map is made by stretch unless told otherwise, and by harmonic for t
   CHECK_THAT(paper.out, Contains("map: harmonic,") && Contains("the disk was multiplied by 10"));
 }
 
+TEST_CASE("the harmonic map is polished unless told otherwise", "[map-cli]") {
+  const auto shear = [](std::vector<std::string> options) {
+    options.insert(options.begin(), {"map", "builtin:ellipsoid:1,1,1.5@4", "--lmax", "8", "--json"});
+    const ProgramRun run = run_program(options);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return nlohmann::json::parse(run.out)["quality"]["shear"]["values"].back().get<double>();
+  };
+  CHECK(shear({"--method", "harmonic"}) < 1.03);
+  CHECK(shear({"--method", "harmonic", "--polish"}) < 1.03);
+  CHECK(shear({"--method", "harmonic", "--no-polish"}) > 1.1);
+  CHECK(shear({"--recipe", "paper"}) > 1.1);
+}
+
 TEST_CASE("a map's PLY reads back bit for bit as what the method gives", "[map-cli]") {
   const TemporaryFolder folder;
   const auto surface = manifold(load_mesh("builtin:cow@1"));
@@ -123,6 +137,9 @@ TEST_CASE("options that do not belong to the method are usage errors", "[map-cli
       {"--disk-scale", "2"},
       {"--centre"},
       {"--polish"},
+      {"--no-polish"},
+      {"--method", "harmonic", "--polish", "--no-polish"},
+      {"--recipe", "paper", "--no-polish"},
       {"--method", "smooth", "--centre"},
       {"--method", "smooth", "--sweeps", "3"},
       {"--method", "harmonic", "--lambda", "0.1"},

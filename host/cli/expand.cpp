@@ -230,6 +230,8 @@ void run(const Options& options, Common& common) {
     write_json(result, write_stdout);
   else
     write_screen(result, write_stdout);
+  flush_stdout();
+  check_surfaces(result.surfaces);
   if (result.accuracy.how != Verify::none && !result.accuracy.passed()) {
     flush_stdout();
     const Agreement& worst = *result.accuracy.worst();

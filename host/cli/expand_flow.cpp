@@ -16,7 +16,6 @@ namespace {
 
 constexpr double paper_time = 0.2;
 constexpr double flow_tolerance = 1e-6;
-constexpr double star_tolerance = 1e-6; // in diagonals
 
 std::uint64_t grid_points(int degree) {
   return 2 * std::uint64_t(degree + 1) * std::uint64_t(degree + 1);
@@ -33,6 +32,7 @@ void level_set(double time, int grid_degree, ExpandSurfaceOptions options, const
   flow.star = found.star;
   flow.level_set = found.level_set;
   flow.uncertainty = std::move(found.uncertainty);
+  flow.failure = std::move(found.failure);
   flow.sutures = found.sutures;
   std::vector<std::string> notes = std::move(found.notes);
   result.expansion = std::move(found.expansion);
@@ -143,9 +143,8 @@ FlowPoints flow_vertices(const ManifoldSurface& surface, double time, Backend& b
 }
 
 StarShapeTime find_star_shape_time(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor) {
-  const Box box = bounding_box(mesh.vertices, mesh.faces);
-  return star_shape_time(mesh.vertices, mesh.faces, origin, star_tolerance * (box.max - box.min).norm(), backend,
-                         monitor);
+  return star_shape_time(mesh.vertices, mesh.faces, origin,
+                         usual_star_shape_tolerance(mesh.vertices, mesh.faces, origin), backend, monitor);
 }
 
 double flow_time(double given, const StarShapeTime& star) {

@@ -141,4 +141,10 @@ std::vector<SurfaceResult> expand_surfaces(const ExpansionChoice& choice, bool e
   return results;
 }
 
+void check_surfaces(std::span<const SurfaceResult> results) {
+  for (const SurfaceResult& result : results)
+    if (result.flow && !result.flow->failure.empty())
+      throw Error(Fault::check_failed, "--of " + result.name + ": " + result.flow->failure);
+}
+
 } // namespace cowgpu::cli

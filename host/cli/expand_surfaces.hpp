@@ -5,6 +5,7 @@
 #include "host/mesh/body.hpp"
 #include "host/report/surface_result.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,5 +42,8 @@ MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, c
 /// Error(mesh_edge_manifold, mesh_vertex_manifold) and what maps, read_map() and expand_surface() throw.
 std::vector<SurfaceResult> expand_surfaces(const ExpansionChoice& choice, bool estimate_aliasing, const Body& body,
                                            Backend& backend, Monitor& monitor);
+
+/// Throws Error(check_failed) with the sentence of the first expansion that came out unfit for use (FlowResult::failure).
+void check_surfaces(std::span<const SurfaceResult> results);
 
 } // namespace cowgpu::cli

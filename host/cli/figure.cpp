@@ -86,17 +86,21 @@ public:
 private:
   // Where all maps are shown because none was named, one that cannot be made is left out.
   std::vector<SurfaceResult> expand(const ExpansionChoice& choice) {
-    if (!options_.of.empty() || choice.maps.size() < 2)
-      return expand_surfaces(choice, false, body_, *backend_, monitor_);
     std::vector<SurfaceResult> results;
+    if (!options_.of.empty() || choice.maps.size() < 2) {
+      results = expand_surfaces(choice, false, body_, *backend_, monitor_);
+      check_surfaces(results);
+      return results;
+    }
     for (const std::string& map : choice.maps) {
       ExpansionChoice one = choice;
       one.maps = {map};
       try {
-        for (SurfaceResult& result : expand_surfaces(one, false, body_, *backend_, monitor_))
-          results.push_back(std::move(result));
+        std::vector<SurfaceResult> of_map = expand_surfaces(one, false, body_, *backend_, monitor_);
+        check_surfaces(of_map);
+        results.push_back(std::move(of_map.front()));
       } catch (const Error& error) {
-        if (error.fault() != Fault::map_failed) throw;
+        if (error.fault() != Fault::map_failed && error.fault() != Fault::check_failed) throw;
         say(fmt::format("cowgpu: the {} is left out: {}\n", map_title(map), error.what()));
       }
     }

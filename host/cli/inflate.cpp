@@ -44,6 +44,7 @@ struct Inflated {
   Level level;
   Audit audit;
   LevelSurfaceReport report;
+  LevelSurfaceError error;
   TriangleSurface surface;
   std::string output;
 };
@@ -73,6 +74,8 @@ nlohmann::ordered_json level_json(const Inflated& body) {
           {"name", body.level.key.text},
           {"volume", a.volume ? nlohmann::ordered_json(*a.volume) : nlohmann::ordered_json()},
           {"area", a.area},
+          {"volume_error", body.error.volume_error},
+          {"area_error", body.error.area_error},
           {"vertices", a.vertices},
           {"faces", a.faces},
           {"shells", a.components},
@@ -83,6 +86,27 @@ nlohmann::ordered_json level_json(const Inflated& body) {
           {"largest_residual", body.report.largest_residual},
           {"output", body.output.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(body.output)},
           {"seconds", body.report.seconds}};
+}
+
+// A value with its error, and no digits beyond that.
+std::string known_text(double value, double error) {
+  const double parts = std::abs(value) / error;
+  const int digits = std::isfinite(parts) && parts > 0 ? std::clamp(int(std::ceil(std::log10(parts))) + 1, 1, 8) : 8;
+  return fmt::format("{:.{}g} +- {:.1e}", value, digits, error);
+}
+
+// What is to be said of a body whose volume or area the cubes leave open by more than a hundredth.
+std::string coarse_note(const Inflated& body, int cells) {
+  const double part = std::max(body.error.volume_error / std::abs(body.audit.volume.value_or(std::nan(""))),
+                               body.error.area_error / body.audit.area);
+  if (part <= 0.01) return {};
+  const double wanted = std::ceil(cells * body.report.cell / body.level.distance);
+  const std::string cure = cells >= 1024    ? "take a longer level"
+                           : wanted > cells ? fmt::format("take --cells {:.0f}", std::min(wanted, 1024.))
+                                            : fmt::format("take --cells {}", std::min(2 * cells, 1024));
+  return fmt::format(
+      "the level {:.6g} is found in cubes of {:.3g}, and its volume and area are known only to {:.2g} %; {}",
+      body.level.distance, body.report.cell, 100 * part, cure);
 }
 
 void write_report(const Options& options, const Common& common, const Body& body, const DeviceFacts& device,
@@ -125,11 +149,12 @@ void write_report(const Options& options, const Common& common, const Body& body
                              star_seconds));
   if (bodies.empty()) return;
   write_stdout("the body inflated by a distance, in the mesh's length unit\n");
-  write_stdout(fmt::format("  {:>10}  {:>12}  {:>12}  {:>6}  {:>5}  {:>9}  {:>9}  {:>8}\n", "level", "volume", "area",
+  write_stdout(fmt::format("  {:>10}  {:>20}  {:>20}  {:>6}  {:>5}  {:>9}  {:>9}  {:>8}\n", "level", "volume", "area",
                            "shells", "genus", "triangles", "cell", "seconds"));
   for (const Inflated& b : bodies)
-    write_stdout(fmt::format("  {:>10.6g}  {:>12.8g}  {:>12.8g}  {:>6}  {:>5}  {:>9}  {:>9.3g}  {:>8.3f}\n",
-                             b.level.distance, b.audit.volume.value_or(std::nan("")), b.audit.area, b.audit.components,
+    write_stdout(fmt::format("  {:>10.6g}  {:>20}  {:>20}  {:>6}  {:>5}  {:>9}  {:>9.3g}  {:>8.3f}\n", b.level.distance,
+                             known_text(b.audit.volume.value_or(std::nan("")), b.error.volume_error),
+                             known_text(b.audit.area, b.error.area_error), b.audit.components,
                              b.audit.genus ? fmt::format("{}", *b.audit.genus) : "-", b.audit.faces, b.report.cell,
                              b.report.seconds));
 }
@@ -140,6 +165,8 @@ Inflated inflate(const Level& level, const Options& options, const Body& body, D
   result.level = level;
   result.surface =
       level_surface(field, body.box.min, body.box.max, level.distance, options.cells, monitor, &result.report);
+  result.error = level_surface_error(field, body.box.min, body.box.max, level.distance, options.cells, result.surface,
+                                     result.report, monitor);
   const RawMesh& mesh = body.surface.mesh();
   result.surface.name = fmt::format("{} inflated by {:.6g}", mesh.name, level.distance);
   RawMesh found;
@@ -234,6 +261,7 @@ void run(const Options& options, const Common& common) {
   std::vector<Inflated> bodies;
   for (const Level& level : levels) {
     bodies.push_back(inflate(level, options, body, *field, outputs, monitor));
+    if (std::string coarse = coarse_note(bodies.back(), options.cells); !coarse.empty()) notes.push_back(coarse);
     monitor.clear();
     if (!bodies.back().output.empty() && !common.quiet) say(fmt::format("cowgpu: wrote {}\n", bodies.back().output));
   }

@@ -25,7 +25,7 @@ struct Options {
   std::string method; // empty: harmonic for a recipe, else stretch
   std::string weights = "cotangent", pole = "back", recipe;
   double disk_scale = 0;
-  bool centre = false, polish = false;
+  bool centre = false, polish = false, no_polish = false;
   unsigned sweeps = StretchOptions{}.sweeps;
   double lambda = 0;
   bool converge = false;
@@ -78,7 +78,7 @@ HarmonicOptions harmonic_options(const Options& options) {
   harmonic.pole = parse_pole(options.pole);
   harmonic.disk_scale = options.disk_scale;
   harmonic.centre = options.centre;
-  harmonic.polish = options.polish;
+  if (options.polish || options.no_polish) harmonic.polish = options.polish;
   return harmonic;
 }
 
@@ -192,8 +192,8 @@ void add_map(CLI::App& app, Common& common) {
       ->add_option(
           "--method", options->method,
           "stretch (the default: every part of the body keeps room on the sphere, and no triangle is flipped), "
-          "harmonic or smooth (both conformal: limbs shrink to points), or flow (along the distance's gradient: folds "
-          "over itself)")
+          "harmonic or smooth (both keep angles, the better the finer the mesh, and shrink limbs to points), or flow "
+          "(along the distance's gradient: may fold over itself)")
       ->check(CLI::IsMember({"harmonic", "stretch", "smooth", "flow"}))
       ->type_name("NAME");
   CLI::Option* weights = command->add_option("--weights", options->weights, "harmonic: what an edge weighs")
@@ -202,28 +202,33 @@ void add_map(CLI::App& app, Common& common) {
   CLI::Option* pole = command
                           ->add_option("--pole", options->pole,
                                        "harmonic: the vertex taken out, by its number (from 0), as the nearest to "
-                                       "X,Y,Z, or back (the middle of the top)")
+                                       "X,Y,Z, or back (the middle of the top); the polished map is the same from all")
                           ->type_name("VERTEX|X,Y,Z|back")
                           ->capture_default_str();
   CLI::Option* scale =
       command
           ->add_option(
               "--disk-scale", options->disk_scale,
-              "harmonic: the unit disk times S goes round the sphere (default: what brings half of the area to "
-              "each hemisphere)")
+              "harmonic: the unit disk times S goes round the sphere, without polish (default: what brings half of the "
+              "area to each hemisphere)")
           ->check(positive_number())
           ->type_name("S");
-  CLI::Option* centre =
-      command->add_flag("--centre", options->centre, "harmonic: move the mean direction by area to the centre");
+  CLI::Option* centre = command->add_flag(
+      "--centre", options->centre, "harmonic: only move the mean direction by area to the centre, without polish");
   CLI::Option* polish = command->add_flag("--polish", options->polish,
-                                          "harmonic: go on until harmonic at the pole too (implies --centre)");
+                                          "harmonic: go on until harmonic at the pole too, and fail where that cannot "
+                                          "be done (default: do so, but where it cannot be done only centre)");
+  CLI::Option* no_polish = command->add_flag("--no-polish", options->no_polish,
+                                             "harmonic: stop at the disk's map; its boundary leaves shear round the "
+                                             "pole, and the map depends on the pole");
   CLI::Option* recipe = command
                             ->add_option("--recipe", options->recipe,
                                          "harmonic: paper (the settings behind the published table of the cow)")
                             ->check(CLI::IsMember({"paper"}))
                             ->type_name("NAME");
   scale->excludes(centre)->excludes(polish); // centring undoes any scale
-  for (CLI::Option* own : {weights, pole, scale, centre, polish}) recipe->excludes(own);
+  no_polish->excludes(polish);
+  for (CLI::Option* own : {weights, pole, scale, centre, polish, no_polish}) recipe->excludes(own);
   CLI::Option* sweeps = command->add_option("--sweeps", options->sweeps, "stretch: relaxations of all vertices")
                             ->check(in_range(0U, 1000000U))
                             ->type_name("N")
@@ -266,10 +271,10 @@ void add_map(CLI::App& app, Common& common) {
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.map.v1.json)");
   add_common_options(*command, common);
   command->footer("Examples: cowgpu map benchmark -o cow.ply; cowgpu map benchmark --recipe paper --lmax 256");
-  const std::vector<Belonging> belongings = {{weights, "harmonic"},     {pole, "harmonic"},   {scale, "harmonic"},
-                                             {centre, "harmonic"},      {polish, "harmonic"}, {recipe, "harmonic"},
-                                             {sweeps, "stretch"},       {lambda, "stretch"},  {converge, "stretch"},
-                                             {relabellings, "stretch"}, {time, "flow"},       {origin, "flow"}};
+  const std::vector<Belonging> belongings = {
+      {weights, "harmonic"},     {pole, "harmonic"},   {scale, "harmonic"}, {centre, "harmonic"}, {polish, "harmonic"},
+      {no_polish, "harmonic"},   {recipe, "harmonic"}, {sweeps, "stretch"}, {lambda, "stretch"},  {converge, "stretch"},
+      {relabellings, "stretch"}, {time, "flow"},       {origin, "flow"}};
   command->callback([options, &common, belongings] {
     if (options->method.empty()) options->method = options->recipe.empty() ? "stretch" : "harmonic";
     refuse_strangers(belongings, options->method);

@@ -61,6 +61,7 @@ SurfaceSource from_mesh(const SurfaceChoice& choice, int largest_order, Backend&
   source.notes = mesh.notes;
   check_memory(surfaces_memory(maps, mesh.faces.size(), backend), backend, "lower --lmax");
   std::vector<SurfaceResult> results = expand_surfaces(maps, false, *source.body, backend, monitor);
+  check_surfaces(results);
   SurfaceResult& result = results.front();
   source.name = result.name;
   source.expansion = std::move(result.expansion);

@@ -193,7 +193,9 @@ void from_mesh(const PhysicsOptions& options, const TipChoice& choice, TipInput&
   input.backend = open_backend(common, &note);
   if (!note.empty()) input.head.notes.push_back(note);
   check_memory(surfaces_memory(maps, body.surface.faces().size(), *input.backend), *input.backend, "lower --lmax");
-  SurfaceResult result = std::move(expand_surfaces(maps, false, body, *input.backend, monitor).front());
+  std::vector<SurfaceResult> results = expand_surfaces(maps, false, body, *input.backend, monitor);
+  check_surfaces(results);
+  SurfaceResult result = std::move(results.front());
   input.expansion_name = result.name;
   input.expansion = std::move(result.expansion);
   for (const std::string& sentence : result.quality.sentences) input.head.notes.push_back("map: " + sentence);

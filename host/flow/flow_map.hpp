@@ -35,7 +35,7 @@ struct LevelSetSutures {
 };
 
 /// Expands the level set's map (host/flow/level_set.hpp); the options' closest_point means nothing here. `time` 0 takes the
-/// star-shape time's upper bound, looked for to 1e-6 of the diagonal; where that is given up, to what was proven, and a note says
+/// star-shape time's upper bound, looked for to usual_star_shape_tolerance(); where that is given up, to what was proven, and a note says
 /// so. Of the options, grid_degree 0 is max(1024, 2 lmax), and aliasing is estimated whether asked for or not.
 struct LevelSetExpansion {
   SurfaceExpansion expansion;
@@ -43,9 +43,16 @@ struct LevelSetExpansion {
   LevelSetReport level_set;
   StarShapeTime star; ///< looked for even where the time is given
   double time = 0;    ///< T
-  /// [degree][field]: the largest over m of what a coefficient is off by. With e the change from the grid of half the degree
-  /// and e' the one before it: e or e' / 4, whichever is more, and what rounding of the coordinates does. The means of the angles, as coefficients, are among degree 0.
+  /// [degree][field]: the largest over m of what a coefficient is off by. 1.4 times the largest difference from two
+  /// turned grids of half the degree, or a third of what one of them differs by from a grid of a quarter, among the fields of
+  /// one kind (lengths, angles) and the two degrees on either side; and
+  /// what rounding does, what the bounds of the star-shape time leave open where the time is that, and `unsettled`. The means
+  /// of the angles, as coefficients, are among degree 0.
   std::vector<std::array<double, 6>> uncertainty;
+  /// Likewise what directions leave open that did not settle on the level set, were they anywhere on the surface.
+  std::vector<std::array<double, 6>> unsettled;
+  /// A sentence if that is more than the grid leaves and than four digits show: the coefficients are then not to be used.
+  std::string failure;
   LevelSetSutures sutures;
   JumpReport averaged;            ///< on the finest grid
   std::vector<std::string> notes; ///< sentences for the user

@@ -16,81 +16,198 @@ namespace cowgpu {
 namespace {
 
 constexpr std::size_t batch = 1 << 18;
-constexpr int most_passes = 100;
+constexpr int most_passes = 200, careful_passes = 12, patient_passes = 30;
 constexpr double jump_angle = 0.05, jump_length = 0.02; // radians, diagonals
 
-/// One direction's search; `low` and `high` are radii known to be inside and outside the level set.
+/// One direction's search. Signed distance less the level, g, is below 0 at `low` and not below 0 at `high`, always.
 struct Ray {
   Vec3 direction;
   double radius, low, high;
-  std::uint32_t at; ///< of the grid
+  double width;         ///< of the bracket when it was last cut in its middle
+  double reach = 0;     ///< about the last place: the ball of this radius does not meet the surface
+  double last = 0;      ///< radius of that place
+  int side = 0;         ///< of it: 1 outside the body, -1 inside, 0 not known
+  std::uint32_t at = 0; ///< of the directions
 };
+
+/// What is known at a place: the signed distance where its sign matters.
+struct Met {
+  double gap, slope; ///< g, and its derivative along the ray
+  double distance;
+};
+
+class Search {
+public:
+  Search(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin, double level, Monitor& monitor,
+         LevelSetReport& report)
+      : field_(field), origin_(origin), level_(level), monitor_(monitor), found_(report) {
+    const double diagonal = (high - low).norm();
+    const double size = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+    outside_ = (1 + 1e-9) * ((low - origin).cwiseAbs().cwiseMax((high - origin).cwiseAbs()).norm() + level);
+    enough_ = 1e-14 * diagonal;
+    rounding_ = 4e-16 * std::max(diagonal, size);
+    settled_ = std::max(1e-9 * diagonal, 1e-14 * size);
+    require_origin_within();
+  }
+
+  LevelSetPoints run(std::span<const Vec3> directions) {
+    LevelSetPoints ends;
+    ends.points.resize(directions.size());
+    for (std::size_t begin = 0; begin < directions.size(); begin += batch) {
+      check_stop(monitor_);
+      std::vector<Ray> rays;
+      for (std::size_t i = begin; i < std::min(begin + batch, directions.size()); ++i) {
+        // Any surface point is nearer to the origin than `outside_` by more than the level.
+        Ray ray{directions[i], outside_, 0, outside_, outside_};
+        ray.at = std::uint32_t(i);
+        rays.push_back(ray);
+      }
+      for (int pass = 0; pass < most_passes && !rays.empty(); ++pass) step(rays, pass, ends);
+    }
+    return ends;
+  }
+
+private:
+  void require_origin_within() {
+    const ClosestPoints closest = field_.closest(std::span(&origin_, 1), {}, monitor_);
+    ++found_.queries;
+    if (closest.distance[0] < level_) return;
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("the origin ({:.6g}, {:.6g}, {:.6g}) lies {:.6g} from the body and the level set at {:.6g}: "
+                    "rays from it do not start inside the level set, and some miss it; take a --time above the "
+                    "first, --time auto, or an --origin inside the body",
+                    origin_.x(), origin_.y(), origin_.z(), closest.distance[0], level_));
+  }
+
+  void step(std::vector<Ray>& rays, int pass, LevelSetPoints& ends) {
+    std::vector<Vec3> places;
+    places.reserve(rays.size());
+    for (const Ray& ray : rays) places.push_back(origin_ + ray.radius * ray.direction);
+    const ClosestPoints closest = field_.closest(places, {.with_sign = false}, monitor_);
+    found_.queries += places.size();
+    find_sides(rays, places, closest);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      Ray ray = rays[k];
+      const double d = closest.distance[k], sign = ray.side < 0 ? -1 : 1, gap = sign * d - level_;
+      const double slope = d > 0 ? sign * (places[k] - closest.point[k]).dot(ray.direction) / d : 0;
+      (gap >= 0 ? ray.high : ray.low) = ray.radius;
+      const bool pinned = ray.high - ray.low <= 4e-16 * outside_, last = pass + 1 == most_passes;
+      if (std::abs(gap) <= enough_ * std::clamp(100 * slope, 0.0, 1.0) || pinned || last) {
+        ends.points[ray.at] = closest.point[k];
+        found_.largest_residual = std::max(found_.largest_residual, std::abs(gap));
+        found_.least_slope = std::min(found_.least_slope, slope);
+        // By the bracket, or by the distance left and the slope that it falls with.
+        const double width = ray.high - ray.low, left = std::abs(gap);
+        const double known_to = std::min(width, left == 0 ? 0 : slope > 0 ? left / slope : width);
+        if (!(known_to <= settled_) || !(left <= settled_)) {
+          ++found_.unsettled;
+          ends.unsettled.push_back(ray.at);
+        } else {
+          const double off = slope > 0 ? std::min(settled_, (left + rounding_) / slope) : settled_;
+          found_.place_error = std::max(found_.place_error, off);
+          found_.angle_error = std::max(found_.angle_error, off / (off + (closest.point[k] - origin_).norm()));
+        }
+        continue;
+      }
+      ray.radius = next_radius(ray, {gap, slope, d}, closest.point[k], pass);
+      rays[kept++] = ray;
+    }
+    rays.resize(kept);
+  }
+
+  // Beyond the level from the surface the side decides whether a place is inside the level set or outside of it. It stays
+  // as it was within a ball that the surface does not meet; else it is asked for.
+  void find_sides(std::vector<Ray>& rays, const std::vector<Vec3>& places, const ClosestPoints& closest) {
+    std::vector<Vec3> asked;
+    std::vector<std::size_t> rays_of;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      Ray& ray = rays[k];
+      if (!(std::abs(ray.radius - ray.last) < ray.reach)) ray.side = 0;
+      ray.last = ray.radius;
+      ray.reach = closest.distance[k];
+      if (ray.radius == outside_) ray.side = 1;
+      if (ray.side != 0 || closest.distance[k] < level_ - enough_) continue;
+      asked.push_back(places[k]);
+      rays_of.push_back(k);
+    }
+    if (asked.empty()) return;
+    const ClosestPoints sides = field_.closest(asked, {}, monitor_);
+    found_.queries += asked.size();
+    for (std::size_t i = 0; i < asked.size(); ++i) rays[rays_of[i]].side = sides.winding[i] > 0 ? -1 : 1;
+  }
+
+  // Newton's step where it stays in the bracket; the bracket's middle where three steps have not halved it.
+  double next_radius(Ray& ray, const Met& met, const Vec3& closest, int pass) const {
+    const double newton = ray.radius - met.gap / met.slope;
+    double next = newton;
+    if (met.gap > 0) {
+      // Within 0.9 d of a place no step crosses the surface: at first the outermost sheet is looked for.
+      const bool wide = pass < careful_passes && ray.radius - newton > 0.9 * met.distance;
+      if (!(met.slope > 0) || !(newton > ray.low) || wide) next = ray.radius - std::min(met.gap, 0.9 * met.distance);
+    } else if (!(met.slope > 0) || !(newton < ray.high)) {
+      // g changes no faster than the place; and the ball of the level's radius about the closest point is inside.
+      const Vec3 from = origin_ - closest;
+      const double b = from.dot(ray.direction), c = from.squaredNorm() - level_ * level_;
+      next = std::max(ray.radius - met.gap, -b + std::sqrt(std::max(0.0, b * b - c)));
+    }
+    const bool cut = pass >= careful_passes && (pass % 3 == 2 || pass > patient_passes);
+    if (cut && ray.high - ray.low > ray.width / 2) next = (ray.low + ray.high) / 2;
+    if (cut) ray.width = ray.high - ray.low;
+    return next > ray.low && next < ray.high ? next : (ray.low + ray.high) / 2;
+  }
+
+  DistanceField& field_;
+  const Vec3 origin_;
+  const double level_;
+  Monitor& monitor_;
+  LevelSetReport& found_;
+  double outside_ = 0, enough_ = 0, settled_ = 0, rounding_ = 0;
+};
+
+struct Angles {
+  double theta, phi;
+};
+
+Angles angles_of(const Vec3& direction) {
+  return {std::atan2(std::hypot(direction.x(), direction.y()), direction.z()),
+          std::atan2(direction.y(), direction.x())};
+}
+
+std::vector<double> turned_fields(std::span<const double> positions, const SphereGrid& grid, const Vec3& origin,
+                                  bool signed_dphi, const Eigen::Matrix3d& turn) {
+  const std::size_t n = grid.points(), length = std::size_t(grid.ring_length);
+  const SphereDirections directions(grid);
+  std::vector<double> values(6 * n);
+  for (std::size_t p = 0; p < n; ++p) {
+    const Angles at = angles_of(turn * directions(int(p / length), int(p % length)));
+    const auto of_point = surface_field_values({positions[p], positions[n + p], positions[2 * n + p]}, origin, at.theta,
+                                               at.phi, signed_dphi);
+    for (std::size_t f = 0; f < 6; ++f) values[f * n + p] = of_point[f];
+  }
+  return values;
+}
 
 } // namespace
 
-std::vector<Vec3> level_set_points(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
-                                   double level, std::span<const Vec3> directions, Monitor& monitor,
-                                   LevelSetReport* report) {
+LevelSetPoints level_set_points(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
+                                double level, std::span<const Vec3> directions, Monitor& monitor,
+                                LevelSetReport* report) {
   if (!(level > 0) || !std::isfinite(level))
     throw Error(Fault::bad_argument, fmt::format("a level set lies at a distance above 0, not {}", level));
   if (!origin.allFinite()) throw Error(Fault::bad_argument, "the origin of a level set's map must be finite");
   const auto start = Clock::now();
-  const double diagonal = (high - low).norm(), enough = 1e-14 * diagonal;
-  const double outside = (low - origin).cwiseAbs().cwiseMax((high - origin).cwiseAbs()).norm() + level;
   LevelSetReport own;
   LevelSetReport& found = report ? *report : own;
-  std::vector<Vec3> ends(directions.size());
-  for (std::size_t begin = 0; begin < directions.size(); begin += batch) {
-    check_stop(monitor);
-    std::vector<Ray> rays;
-    for (std::size_t i = begin; i < std::min(begin + batch, directions.size()); ++i)
-      rays.push_back({directions[i], outside, 0, outside, std::uint32_t(i)});
-    for (int pass = 0; pass < most_passes && !rays.empty(); ++pass) {
-      std::vector<Vec3> places;
-      places.reserve(rays.size());
-      for (const Ray& ray : rays) places.push_back(origin + ray.radius * ray.direction);
-      const ClosestPoints closest = field.closest(places, {.with_sign = false}, monitor);
-      found.queries += places.size();
-      std::size_t kept = 0;
-      for (std::size_t k = 0; k < rays.size(); ++k) {
-        Ray ray = rays[k];
-        const double d = closest.distance[k], gap = d - level;
-        const double slope = d > 0 ? (places[k] - closest.point[k]).dot(ray.direction) / d : 0;
-        (gap > 0 ? ray.high : ray.low) = ray.radius;
-        const bool pinned = ray.high - ray.low <= 4e-16 * outside;
-        if (std::abs(gap) <= enough || pinned || pass + 1 == most_passes) {
-          ends[ray.at] = closest.point[k];
-          found.largest_residual = std::max(found.largest_residual, std::abs(gap));
-          found.least_slope = std::min(found.least_slope, slope);
-          found.unsettled += std::abs(gap) > 1e-12 * diagonal;
-          continue;
-        }
-        // A step within 0.9 d cannot cross the surface, so the unsigned distance is enough.
-        double next = ray.radius - gap / slope;
-        if (gap > 0) {
-          if (!(slope > 0) || next <= ray.low || ray.radius - next > 0.9 * d)
-            next = ray.radius - std::min(gap, 0.9 * d);
-        } else if (!(slope > 0) || next >= ray.high) {
-          // The far side of the ball about the closest point.
-          const Vec3 from = origin - closest.point[k];
-          const double b = from.dot(ray.direction), c = from.squaredNorm() - level * level;
-          next = std::max(ray.radius, -b + std::sqrt(std::max(0.0, b * b - c)));
-        }
-        if (pass > 12 && !(next > ray.low && next < ray.high)) next = (ray.low + ray.high) / 2;
-        if (pass > 24 && pass % 2) next = (ray.low + ray.high) / 2;
-        ray.radius = next;
-        rays[kept++] = ray;
-      }
-      rays.resize(kept);
-    }
-  }
+  LevelSetPoints ends = Search(field, low, high, origin, level, monitor, found).run(directions);
   found.seconds += seconds_since(start);
   return ends;
 }
 
 std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
-                                        double level, const SphereGrid& grid, Monitor& monitor,
-                                        LevelSetReport* report) {
+                                        double level, const SphereGrid& grid, Monitor& monitor, LevelSetReport* report,
+                                        const Eigen::Matrix3d& turn) {
   LevelSetReport found;
   const std::size_t points = grid.points(), length = std::size_t(grid.ring_length);
   std::vector<double> positions(3 * points);
@@ -100,10 +217,12 @@ std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, c
     monitor.progress("meeting the level set", double(ring) / double(grid.rings));
     std::vector<Vec3> some;
     for (std::size_t i = ring; i < std::min(std::size_t(grid.rings), ring + rings_a_batch); ++i)
-      for (std::size_t j = 0; j < length; ++j) some.push_back(directions(int(i), int(j)));
-    const std::vector<Vec3> ends = level_set_points(field, low, high, origin, level, some, monitor, &found);
-    for (std::size_t k = 0; k < ends.size(); ++k)
-      for (std::size_t c = 0; c < 3; ++c) positions[c * points + ring * length + k] = ends[k][Eigen::Index(c)];
+      for (std::size_t j = 0; j < length; ++j) some.emplace_back(turn * directions(int(i), int(j)));
+    const LevelSetPoints ends = level_set_points(field, low, high, origin, level, some, monitor, &found);
+    for (std::size_t k = 0; k < some.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c) positions[c * points + ring * length + k] = ends.points[k][Eigen::Index(c)];
+    for (const std::uint32_t k : ends.unsettled)
+      found.unsettled_angle += grid.weights[ring + k / length] * 2 * std::numbers::pi / double(length);
   }
   monitor.progress("meeting the level set", 1);
   if (report) *report = found;
@@ -112,13 +231,16 @@ std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, c
 
 std::vector<double> averaged_fields(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
                                     double level, const SphereGrid& grid, std::span<const double> positions,
-                                    bool signed_dphi, int parts, Monitor& monitor, JumpReport* report) {
+                                    bool signed_dphi, int parts, Monitor& monitor, JumpReport* report,
+                                    const Eigen::Matrix3d& turn) {
   const std::size_t n = grid.points(), length = std::size_t(grid.ring_length), rings = std::size_t(grid.rings);
   if (positions.size() != 3 * n || parts < 1)
     throw Error(Fault::bad_argument,
                 fmt::format("means of {} x {} parts from {} numbers on {} points", parts, parts, positions.size(), n));
   std::vector<double> values =
-      surface_fields(std::vector<double>(positions.begin(), positions.end()), grid, origin, signed_dphi);
+      turn.isIdentity(0)
+          ? surface_fields(std::vector<double>(positions.begin(), positions.end()), grid, origin, signed_dphi)
+          : turned_fields(positions, grid, origin, signed_dphi, turn);
   // Thresholds well above what the fields move by from point to point elsewhere.
   const double angle = jump_angle, moved = jump_length * (high - low).norm();
   std::vector<bool> jumps(n);
@@ -134,6 +256,7 @@ std::vector<double> averaged_fields(DistanceField& field, const Vec3& low, const
     compare(p, ring * length + (p + 1) % length);
     if (ring + 1 < rings) compare(p, p + length);
   }
+  JumpReport found;
   std::vector<double> edges = {1}; // cosines
   for (const double weight : grid.weights) edges.push_back(edges.back() - weight);
   edges.back() = -1;
@@ -145,10 +268,7 @@ std::vector<double> averaged_fields(DistanceField& field, const Vec3& low, const
   for (std::size_t begin = 0; begin < cells.size(); begin += cells_a_batch) {
     monitor.progress("averaging over jumps", double(begin) / double(cells.size()));
     const std::size_t end = std::min(cells.size(), begin + cells_a_batch);
-    struct Part {
-      double theta, phi;
-    };
-    std::vector<Part> where;
+    std::vector<Angles> where;
     std::vector<Vec3> directions;
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t ring = cells[i] / length;
@@ -156,22 +276,27 @@ std::vector<double> averaged_fields(DistanceField& field, const Vec3& low, const
         const double across = (double(part / k) + 0.5) / double(k), along = (double(part % k) + 0.5) / double(k) - 0.5;
         const double z = std::clamp(edges[ring] + across * (edges[ring + 1] - edges[ring]), -1.0, 1.0);
         const double theta = std::acos(z), phi = grid.phi(int(cells[i] % length)) + along * step;
-        where.push_back({theta, phi});
-        directions.emplace_back(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), z);
+        directions.emplace_back(turn * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), z));
+        where.push_back(turn.isIdentity(0) ? Angles{theta, phi} : angles_of(directions.back()));
       }
     }
-    const std::vector<Vec3> ends = level_set_points(field, low, high, origin, level, directions, monitor);
+    LevelSetReport of_parts;
+    const LevelSetPoints ends = level_set_points(field, low, high, origin, level, directions, monitor, &of_parts);
+    for (const std::uint32_t part : ends.unsettled)
+      found.unsettled_angle += grid.weights[cells[begin + part / each] / length] * step / double(each);
     for (std::size_t i = begin; i < end; ++i) {
       std::array<double, 6> sum{};
       for (std::size_t part = 0; part < each; ++part) {
         const std::size_t at = (i - begin) * each + part;
-        const auto of_part = surface_field_values(ends[at], origin, where[at].theta, where[at].phi, signed_dphi);
+        const auto of_part = surface_field_values(ends.points[at], origin, where[at].theta, where[at].phi, signed_dphi);
         for (std::size_t f = 0; f < 6; ++f) sum[f] += of_part[f] / double(each);
       }
       for (std::size_t f = 0; f < 6; ++f) values[f * n + cells[i]] = sum[f];
     }
   }
-  if (report) *report = {cells.size(), n};
+  found.cells = cells.size();
+  found.points = n;
+  if (report) *report = found;
   return values;
 }
 

@@ -3,6 +3,7 @@
 #include "host/clock.hpp"
 #include "host/error.hpp"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -64,7 +65,7 @@ Place corner_of(const Place& cube, int corner) {
 
 // Corners of the blocks of cubes that the level may pass: distances change no faster than places.
 std::vector<Place> near_blocks(DistanceField& field, const Lattice& lattice, double level, Monitor& monitor,
-                               LevelSurfaceReport& report) {
+                               LevelSurfaceReport& report, std::uint64_t& cubes_inside) {
   std::vector<Place> blocks;
   std::vector<Vec3> middles;
   const Place n = lattice.cubes();
@@ -79,7 +80,10 @@ std::vector<Place> near_blocks(DistanceField& field, const Lattice& lattice, dou
   const double reach = std::sqrt(3.0) / 2 * block * lattice.cell() * (1 + 1e-9);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i)
-    if (std::abs(closest.distance[i] - level) <= reach) blocks[kept++] = blocks[i];
+    if (std::abs(closest.distance[i] - level) <= reach)
+      blocks[kept++] = blocks[i];
+    else if (closest.distance[i] < level)
+      cubes_inside += block * block * block;
   blocks.resize(kept);
   return blocks;
 }
@@ -115,6 +119,14 @@ struct EdgeHash {
   }
 };
 
+enum class Side { outside, inside, cut };
+
+// A cube that the level may pass; of its corners.
+struct Passed {
+  Place cube;
+  Side side;
+};
+
 class Marching {
 public:
   Marching(const Lattice& lattice, const std::unordered_map<std::uint64_t, double>& values, double level,
@@ -131,12 +143,23 @@ public:
       above[i] = values_.at(ids[i]) - level_;
       outside += above[i] >= 0;
     }
-    if (outside == 0 || outside == 8) return;
+    if (outside == 0 || outside == 8) {
+      // No point is farther from every corner than half a cube's diagonal.
+      const double nearest = std::abs(
+          *std::min_element(above.begin(), above.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+      if (nearest <= std::sqrt(0.75) * lattice_.cell())
+        passed.push_back({cube, outside == 8 ? Side::outside : Side::inside});
+      else
+        whole += outside == 0;
+      return;
+    }
+    passed.push_back({cube, Side::cut});
     ++cut;
     for (const Path& path : paths) tetrahedron(path, ids, above);
   }
 
-  std::uint64_t cut = 0;
+  std::uint64_t cut = 0, whole = 0; ///< cubes: that it passes; inside it
+  std::vector<Passed> passed;
 
 private:
   std::uint32_t vertex(std::uint64_t a, double at_a, std::uint64_t b, double at_b) {
@@ -190,6 +213,54 @@ private:
   std::unordered_map<std::array<std::uint64_t, 2>, std::uint32_t, EdgeHash> edges_;
 };
 
+// Between 0 and 1, without a pattern that a body could share: splitmix64.
+double scattered(std::uint64_t number) {
+  std::uint64_t z = number * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return double((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+// Points in every cube, one at random in each of its parts, n along a side.
+void sample_volume(DistanceField& field, const Lattice& lattice, double level, const std::vector<Passed>& cubes,
+                   std::uint64_t cubes_inside, Monitor& monitor, LevelSurfaceReport& report) {
+  const int n = std::clamp(int(std::ceil(std::cbrt(400'000. / (double(cubes.size()) + 1)))), 1, 24);
+  const std::size_t each = std::size_t(n) * std::size_t(n) * std::size_t(n);
+  const std::size_t cubes_a_batch = std::max<std::size_t>(1, (std::size_t(1) << 18) / each);
+  const double part = std::pow(lattice.cell() / n, 3);
+  std::uint64_t inside = 0, missed = 0;
+  double variance = 0; // in parts, of cubes that hold some of both: about one layer of theirs is open to chance
+  for (std::size_t begin = 0; begin < cubes.size(); begin += cubes_a_batch) {
+    check_stop(monitor);
+    const std::size_t end = std::min(cubes.size(), begin + cubes_a_batch);
+    std::vector<Vec3> points;
+    points.reserve((end - begin) * each);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Place& cube = cubes[i].cube;
+      std::uint64_t number = 3 * each * lattice.id(cube);
+      for (int z = 0; z < n; ++z)
+        for (int y = 0; y < n; ++y)
+          for (int x = 0; x < n; ++x, number += 3)
+            points.push_back(lattice.at(double(cube[0]) + (x + scattered(number)) / n,
+                                        double(cube[1]) + (y + scattered(number + 1)) / n,
+                                        double(cube[2]) + (z + scattered(number + 2)) / n));
+    }
+    const ClosestPoints closest = field.closest(points, {}, monitor);
+    report.queries += points.size();
+    for (std::size_t i = begin; i < end; ++i) {
+      std::uint64_t within = 0;
+      for (std::size_t k = 0; k < each; ++k) within += closest.distance[(i - begin) * each + k] < level;
+      inside += within;
+      if (cubes[i].side == Side::outside) missed += within;
+      if (cubes[i].side == Side::inside) missed += each - within;
+      if (cubes[i].side == Side::cut || (within > 0 && within < each)) variance += double(n) * n / 4;
+    }
+  }
+  report.sampled_volume = double(cubes_inside) * std::pow(lattice.cell(), 3) + double(inside) * part;
+  report.sampled_chance = 3 * part * std::sqrt(variance);
+  report.missed = double(missed) * part;
+}
+
 // Newton's method along the gradient, which has length 1.
 void move_onto(DistanceField& field, double level, double enough, double cell, Monitor& monitor,
                TriangleSurface& surface, LevelSurfaceReport& report) {
@@ -222,20 +293,14 @@ void move_onto(DistanceField& field, double level, double enough, double cell, M
   }
 }
 
-} // namespace
-
-TriangleSurface level_surface(DistanceField& field, const Vec3& low, const Vec3& high, double level, int cells,
-                              Monitor& monitor, LevelSurfaceReport* report) {
-  if (!(level > 0) || !std::isfinite(level))
-    throw Error(Fault::bad_argument, fmt::format("a body is inflated by a distance above 0, not {}", level));
-  if (cells < 4 || cells > 1024)
-    throw Error(Fault::bad_argument, fmt::format("a level set is looked for in 4 to 1024 cubes a side, not {}", cells));
+TriangleSurface surface_in_cubes(DistanceField& field, const Vec3& low, const Vec3& high, double level, int cells,
+                                 bool sampled, Monitor& monitor, LevelSurfaceReport& found) {
   const auto start = Clock::now();
-  LevelSurfaceReport found;
   const Lattice lattice(low, high, level, cells);
   found.cell = lattice.cell();
   monitor.progress("looking for the level set", 0);
-  const std::vector<Place> blocks = near_blocks(field, lattice, level, monitor, found);
+  std::uint64_t cubes_inside = 0;
+  const std::vector<Place> blocks = near_blocks(field, lattice, level, monitor, found, cubes_inside);
   check_stop(monitor);
   const auto values = distances_at(field, lattice, blocks, monitor, found);
   check_stop(monitor);
@@ -249,11 +314,65 @@ TriangleSurface level_surface(DistanceField& field, const Vec3& low, const Vec3&
   if (surface.vertices.size() > 0x7fffffffULL)
     throw Error(Fault::too_large, "the level set has more than 2^31 vertices: take fewer cubes");
   found.cubes = marching.cut;
+  if (sampled) sample_volume(field, lattice, level, marching.passed, cubes_inside + marching.whole, monitor, found);
   move_onto(field, level, 1e-12 * (high - low).norm(), lattice.cell(), monitor, surface, found);
   monitor.progress("looking for the level set", 1);
   found.seconds = seconds_since(start);
+  return surface;
+}
+
+struct Measures {
+  double volume, area;
+};
+
+Measures measure(const TriangleSurface& surface, const Vec3& middle) {
+  double volume = 0, area = 0;
+  for (const Face& f : surface.faces) {
+    const Vec3 a = surface.vertices[f[0]] - middle, b = surface.vertices[f[1]] - middle,
+               c = surface.vertices[f[2]] - middle;
+    volume += a.dot(b.cross(c)) / 6;
+    area += (b - a).cross(c - a).norm() / 2;
+  }
+  return {volume, area};
+}
+
+} // namespace
+
+TriangleSurface level_surface(DistanceField& field, const Vec3& low, const Vec3& high, double level, int cells,
+                              Monitor& monitor, LevelSurfaceReport* report) {
+  if (!(level > 0) || !std::isfinite(level))
+    throw Error(Fault::bad_argument, fmt::format("a body is inflated by a distance above 0, not {}", level));
+  if (cells < 4 || cells > 1024)
+    throw Error(Fault::bad_argument, fmt::format("a level set is looked for in 4 to 1024 cubes a side, not {}", cells));
+  LevelSurfaceReport found;
+  TriangleSurface surface = surface_in_cubes(field, low, high, level, cells, true, monitor, found);
   if (report) *report = found;
   return surface;
+}
+
+LevelSurfaceError level_surface_error(DistanceField& field, const Vec3& low, const Vec3& high, double level, int cells,
+                                      const TriangleSurface& surface, const LevelSurfaceReport& report,
+                                      Monitor& monitor) {
+  const Vec3 middle = (low + high) / 2;
+  const Measures fine = measure(surface, middle);
+  std::array<Measures, 2> coarser{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    LevelSurfaceReport own;
+    coarser[k] =
+        measure(surface_in_cubes(field, low, high, level, std::max(1, cells >> (k + 1)), false, monitor, own), middle);
+  }
+  const auto change = [&](double Measures::*what) {
+    const double first = std::abs(fine.*what - coarser[0].*what),
+                 before = std::abs(coarser[0].*what - coarser[1].*what);
+    return 1.5 * std::max(first, before / 4);
+  };
+  LevelSurfaceError error{fine.volume, fine.area, 0, 0};
+  error.volume_error =
+      std::max(change(&Measures::volume), std::abs(fine.volume - report.sampled_volume) + report.sampled_chance);
+  const double relative =
+      report.sampled_volume > 0 ? fine.area * error.volume_error / report.sampled_volume : fine.area;
+  error.area_error = std::max(change(&Measures::area), relative) + 3 * report.missed / level;
+  return error;
 }
 
 } // namespace cowgpu

@@ -3,6 +3,7 @@
 #include "host/error.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/orientation.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -70,6 +71,13 @@ void cut(const std::array<Vec3, 3>& corners, int count, const Middle& middle, st
   other[std::size_t(from)] = between;
 }
 
+// Whether the origin is behind the plane of every face, by exact signs.
+bool sees_all(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin) {
+  return std::all_of(faces.begin(), faces.end(), [&](const Face& f) {
+    return side_of_plane(vertices[f[0]], vertices[f[1]], vertices[f[2]], origin) > 0;
+  });
+}
+
 class Search {
 public:
   Search(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin, double tolerance,
@@ -84,10 +92,15 @@ public:
                   fmt::format("a star-shape time to {} is beyond the rounding of distances: ask for "
                               "{} at least",
                               tolerance, 1e-9 * diagonal_));
-    seed(vertices, faces);
+    sees_all_ = sees_all(vertices, faces, origin);
+    if (!sees_all_) seed(vertices, faces);
   }
 
   StarShapeTime run(double farthest) {
+    if (sees_all_) {
+      found_.upper = tolerance_;
+      return found_;
+    }
     const double finest = tolerance_;
     found_.upper = farthest;
     int tens = 0;
@@ -150,6 +163,7 @@ private:
   Monitor& monitor_;
   std::unique_ptr<DistanceField> field_;
   double diagonal_ = 0;
+  bool sees_all_ = false; ///< the origin is behind every face
   std::vector<std::vector<Vec3>> cones_ = {{}};
   std::vector<Region> seeds_;
   StarShapeTime found_;
@@ -293,6 +307,14 @@ void Search::raise(const std::vector<Region>& regions) {
 }
 
 } // namespace
+
+double usual_star_shape_tolerance(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin) {
+  const Box box = bounding_box(vertices, faces);
+  const double diagonal = (box.max - box.min).norm();
+  const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  const double least = std::max(1e-9 * diagonal, 0x1p-47 * largest);
+  return sees_all(vertices, faces, origin) ? least : std::max(1e-6 * diagonal, least);
+}
 
 StarShapeTime star_shape_time(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin,
                               double tolerance, Backend& backend, Monitor& monitor) {

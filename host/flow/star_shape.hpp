@@ -10,8 +10,8 @@ namespace cowgpu {
 /// The least t for which the inflated body {d <= t} is star-shaped about an origin, between two bounds. Adding a ball keeps
 /// a star-shaped set so: it is star-shaped for every t above, and for none below `lower`.
 struct StarShapeTime {
-  double lower = 0; ///< 0 if the body is star-shaped as it is
-  double upper = 0; ///< proven
+  double lower = 0;      ///< 0 if the body is star-shaped as it is
+  double upper = 0;      ///< proven
   bool given_up = false; ///< the bounds are farther apart than asked for
   /// The witness of `lower`: at q + t n, for every t just below it, the inflated body's surface looks away from the origin.
   Vec3 point = Vec3::Zero();  ///< q, on the surface
@@ -31,6 +31,9 @@ struct StarShapeTime {
 /// that q + L n is at least L from the surface, distances change no faster than the place, so one query rules out a whole
 /// neighbourhood. Rounding is allowed for by 1e-12 of the diagonal.
 ///
+/// Where the origin is behind the plane of every face, by exact signs, the body is star-shaped as it is: 0 and `tolerance`,
+/// without a search.
+///
 /// Some 1e5 to 1e6 queries where the supremum is met at points. Where it is met all along an edge, as between two parallel
 /// boxes, they grow like length / tolerance. So the tolerance goes down from the diagonal by tens, and the search is given up
 /// once it would look at more than 2e7 regions in all: the upper bound is then that of the tolerance before, proven all the same (that of
@@ -40,5 +43,10 @@ struct StarShapeTime {
 /// the diagonal, what DistanceField throws, interrupted.
 StarShapeTime star_shape_time(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin,
                               double tolerance, Backend& backend, Monitor& monitor);
+
+/// The tolerance that commands ask for: 1e-6 of the bounding box's diagonal; where the body is star-shaped as it is, 1e-9 of it, so
+/// that the level set at the upper bound is the surface itself. Far from the coordinates' zero no less than 2^-47 of them, which
+/// distances resolve.
+double usual_star_shape_tolerance(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin);
 
 } // namespace cowgpu

@@ -159,6 +159,7 @@ std::uint32_t pole_vertex(const ManifoldSurface& surface, const Pole& pole) {
 HarmonicOptions HarmonicOptions::paper_recipe() {
   HarmonicOptions options;
   options.disk_scale = 10;
+  options.polish = false;
   options.align = false;
   return options;
 }
@@ -169,7 +170,9 @@ SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& op
                 fmt::format("a disk cannot be scaled by {}: give a positive number, or none to let "
                             "each hemisphere have half of the area",
                             options.disk_scale));
-  if (options.polish && options.weights == EdgeWeights::mean_value)
+  const bool polishable = options.weights != EdgeWeights::mean_value;
+  const bool polishes = options.polish.value_or(polishable && options.disk_scale == 0 && !options.centre);
+  if (polishes && !polishable)
     throw Error(Fault::bad_argument,
                 "a map with mean-value weights has no energy that could be polished: take cotangent "
                 "or Tutte weights");
@@ -199,14 +202,27 @@ SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& op
       fmt::format("{} weights; relative residual of the harmonic system {:.1e}", name(options.weights), disk.residual));
   map.notes.push_back(fmt::format("the disk was multiplied by {:.6g}{}", scale,
                                   options.disk_scale > 0 ? "" : ", which brings half of the area to each hemisphere"));
-  if (options.polish) {
-    const PolishReport report = polish(laplace, surface.faces(), areas, x, monitor);
-    map.notes.push_back(fmt::format("polished in {} steps to a relative imbalance of {:.1e}: the Dirichlet energy over "
-                                    "4 pi went from {:.9g} to {:.9g}",
-                                    report.steps, std::sqrt(report.decrement),
-                                    report.energy_before / (4 * std::numbers::pi),
-                                    report.energy / (4 * std::numbers::pi)));
-  } else if (options.centre)
+  bool polished = false;
+  if (polishes) {
+    const std::vector<SpherePoint> start = x;
+    try {
+      const PolishReport report = polish(laplace, surface.faces(), areas, x, monitor);
+      polished = true;
+      map.notes.push_back(fmt::format("polished in {} steps to a relative imbalance of {:.1e}: the Dirichlet energy "
+                                      "over 4 pi went from {:.9g} to {:.9g}",
+                                      report.steps, std::sqrt(report.decrement),
+                                      report.energy_before / (4 * std::numbers::pi),
+                                      report.energy / (4 * std::numbers::pi)));
+    } catch (const Error& error) {
+      if (options.polish || error.fault() != Fault::map_failed) throw;
+      x = start;
+      map.notes.push_back(
+          fmt::format("not polished, so that shear is left round the vertex taken out: {}", error.what()));
+    }
+  } else if (!options.polish && !polishable)
+    map.notes.emplace_back(
+        "not polished, so that shear is left round the vertex taken out: mean-value weights have no energy");
+  if (!polished && (options.centre || polishes))
     map.notes.push_back(fmt::format("centred by a Moebius transformation in {} steps", centre(x, areas)));
   if (options.align) {
     align(x, areas, surface.vertices());

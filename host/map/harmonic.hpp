@@ -6,6 +6,7 @@
 #include "host/monitor.hpp"
 
 #include <cstdint>
+#include <optional>
 
 namespace cowgpu {
 
@@ -34,15 +35,17 @@ struct HarmonicOptions {
   double disk_scale = 0;
   /// The Moebius transformation that moves the mean direction (by surface area) to the sphere's centre.
   bool centre = false;
-  /// Go on to the map that is harmonic on the whole sphere (implies centre). The result depends on the pole no more.
-  /// Symmetric weights only.
-  bool polish = false;
+  /// Go on to the map that is harmonic on the whole sphere (implies centre): the result depends on the pole no more, and
+  /// angles are kept as well as the mesh allows. Without it the disk's boundary leaves shear round the pole. Symmetric
+  /// weights only. Nothing: where that is possible and neither a scale nor centring alone is asked for; where it fails, on
+  /// triangles too thin for it, the map is centred instead and a note says so.
+  std::optional<bool> polish;
   /// Rotate the sphere so that directions on it look like those from the middle of the body (moebius.hpp). Otherwise the
   /// pole is at (0, 0, -1) and the vertex of smallest index among its neighbours has azimuth 0.
   bool align = true;
 
   /// What gives the table of the paper "Higher multipoles of the cow" on its mesh: cotangent weights, the back as pole,
-  /// scale 10, nothing centred or rotated.
+  /// scale 10, nothing centred, polished or rotated.
   static HarmonicOptions paper_recipe();
 };
 

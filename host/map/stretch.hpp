@@ -21,8 +21,11 @@ struct StretchOptions {
 
 /// How good a map is in the sense that the stretch map minimises.
 struct StretchMeasure {
-  /// The energy over 4 pi on a surface of area 4 pi: the mean squared stretch from the sphere to the surface, 1 for an
-  /// isometry, and 1 + lambda with lambda. Infinite if a triangle is not positively oriented.
+  /// The energy over 4 pi on a surface of area 4 pi: the mean squared stretch from the sphere to the surface. A map that
+  /// keeps the shape of every triangle has the mean of s^2 / h^2, s the factor of lengths and h the distance of the
+  /// triangle's plane from the sphere's centre, since the area on the sphere is det / 2 (stretch_energy.hpp): for an isometry it tends
+  /// to 1 from above as triangles shrink (with lambda to 1 + lambda), and the icosahedron inscribed in the sphere has
+  /// 2.08. Infinite if a triangle is not positively oriented.
   double energy = 0;
   /// Root of the sum over vertices of the squared gradient of `energy` along the sphere, in 1/radian. NaN if infinite.
   double gradient = 0;

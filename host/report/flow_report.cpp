@@ -93,11 +93,12 @@ std::string star_shape_text(const StarShapeTime& star) {
 }
 
 std::string star_shape_sentence(const StarShapeTime& star, double time) {
-  if (time >= star.upper) return "the inflated body is star-shaped: the map is one-to-one";
+  if (time >= star.upper)
+    return "the inflated body is star-shaped: every direction from the origin meets its surface once";
   if (time < star.lower)
     return fmt::format(
-        "warning: T = {:.6g} is before t* = {:.6g}: the inflated body is not star-shaped, and the map is "
-        "not one-to-one",
+        "warning: T = {:.6g} is before t* = {:.6g}: the inflated body is not star-shaped, and some directions meet its "
+        "surface more than once",
         time, star.lower);
   return "whether the inflated body is star-shaped at T is not decided: T lies between the bounds of t*";
 }
@@ -138,13 +139,15 @@ ordered_json flow_points_json(const FlowReport& points) {
 }
 
 ordered_json flow_json(const FlowResult& flow) {
+  const ordered_json star_shaped = flow.time >= flow.star.upper  ? ordered_json(true)
+                                   : flow.time < flow.star.lower ? ordered_json(false)
+                                                                 : ordered_json();
   ordered_json json = {{"meaning", flow.meaning},
                        {"time", flow.time},
                        {"time_choice", flow.time_choice},
                        {"star_shape", star_shape_json(flow.star)},
-                       {"one_to_one", flow.time >= flow.star.upper  ? ordered_json(true)
-                                      : flow.time < flow.star.lower ? ordered_json(false)
-                                                                    : ordered_json()},
+                       {"star_shaped", star_shaped},
+                       {"one_to_one", star_shaped},
                        {"points", flow_points_json(flow.points)},
                        {"sheets", sheets_json(flow.sheets)},
                        {"uncertainty", rows_json(flow.uncertainty)}};
@@ -152,7 +155,9 @@ ordered_json flow_json(const FlowResult& flow) {
     json["level_set"] = {{"queries", flow.level_set->queries},
                          {"largest_residual", flow.level_set->largest_residual},
                          {"least_slope", flow.level_set->least_slope},
-                         {"unsettled", flow.level_set->unsettled}};
+                         {"unsettled", flow.level_set->unsettled},
+                         {"unsettled_angle", flow.level_set->unsettled_angle},
+                         {"failure", flow.failure.empty() ? ordered_json() : ordered_json(flow.failure)}};
   if (flow.sutures) json["sutures"] = sutures_json(*flow.sutures);
   if (flow.converged) json["converged"] = converged_json(*flow.converged);
   return json;

@@ -33,6 +33,7 @@ struct FlowResult {
   std::optional<LevelSetSutures> sutures; ///< of the level set's map
   /// [degree][field], the largest over m; empty where none is known (the paper's recipe).
   std::vector<std::array<double, 6>> uncertainty;
+  std::string failure;                     ///< LevelSetExpansion::failure
   std::optional<ConvergedTable> converged; ///< of the paper's recipe: signed sheets at the same time
 };
 

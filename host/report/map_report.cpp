@@ -127,8 +127,10 @@ void write_screen(const MapReport& report, const Sink& sink) {
   row("smallest height", fmt::format("{:.3e} rad, {:.3g} of a cell, {}", q.smallest_height, q.smallest_height / q.cell,
                                      where(mesh, q.smallest_height_face)));
   if (report.stretch)
-    row("stretch", fmt::format("mean square {:.9g} (1: an isometry), gradient {:.1e}", report.stretch->energy,
-                               report.stretch->gradient));
+    row("stretch",
+        fmt::format("mean square {:.9g} (an isometry tends to 1 as triangles shrink, and is above it on coarse "
+                    "ones), gradient {:.1e}",
+                    report.stretch->energy, report.stretch->gradient));
   if (!report.repeats.empty()) row("relabelled and turned", repeats_text(report));
   row("seen by the grid", fmt::format("{} of {} triangles, {:.6g} % of the surface", q.triangles - q.unseen,
                                       q.triangles, 100 * (1 - q.unseen_area)));
