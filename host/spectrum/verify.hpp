@@ -64,8 +64,8 @@ std::vector<double> problem_error(const MomentProblem& problem, const RoundingTe
 Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify how, std::uint64_t seed,
                         Monitor& monitor, RoundingTerms* rounding = nullptr);
 
-/// verify_moments() of each problem or its near_problem(), and the estimate for `mass`, the sum of their moments, of which mass_moments() gave the
-/// `norms`: triangles are counted over all, agreements are the worst of each pair of paths.
+/// verify_moments() of each problem or its near_problem(), and the estimate for `mass`, the sum of their moments, of which
+/// mass_moments() gave the `norms`: triangles are counted over all, agreements are the worst of each pair of paths.
 Accuracy verify_all(std::span<const MomentProblem> problems, const Coefficients& mass,
                     std::span<const std::vector<double>> norms, Backend& backend, Verify how, std::uint64_t seed,
                     Monitor& monitor);
