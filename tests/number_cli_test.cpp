@@ -148,6 +148,24 @@ TEST_CASE("tip refuses what is no decimal number in options and in tables", "[nu
     refused({"--push", folder / "push.csv"}, 3, "push.csv:3");
   }
   refused({"--push", "1,5N:1s"}, 2, "a point: 1.5");
+  const std::string file = folder / "mean.csv";
+  REQUIRE(run_program(
+              {"expand", "builtin:ellipsoid:1,1,2@2", "--of", "stretch", "--lmax", "2", "--device", "cpu", "-o", file})
+              .exit_code == 0);
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  const std::string key = "removed_mean_";
+  const std::size_t at = text.str().find(key), value = text.str().find_first_of(" \t", at) + 1;
+  REQUIRE(at != std::string::npos);
+  for (const char* wrong : {"nan", "inf", "0x10", "1,5", "milk"}) {
+    std::string changed = text.str();
+    changed.replace(value, changed.find('\n', value) - value, wrong);
+    std::ofstream(file) << changed;
+    const ProgramRun run = run_program({"tip", file, "--order", "0..2", "--device", "cpu"});
+    INFO(wrong << ": " << run.err);
+    CHECK(run.exit_code == 3);
+    CHECK_THAT(run.err, Contains(key));
+  }
   std::ofstream(folder / "push.csv") << "time,force\n0,0\n1,2,5\n";
   refused({"--push", folder / "push.csv"}, 3, "push.csv:3");
 }

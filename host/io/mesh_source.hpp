@@ -32,7 +32,7 @@ std::optional<std::filesystem::path> mesh_file(const std::string& word);
 std::string mesh_word_anywhere(const std::string& word);
 
 /// The mesh of a word, by its mesh_kind(); a catalogued file's hash is checked, other files are told by their content, of one
-/// of mesh_formats(). The mesh's name is the word. Throws Error(mesh_missing) with where to get it, cannot_read, and what
+/// of mesh_formats(). Files have the word for a name. Throws Error(mesh_missing) with where to get it, cannot_read, and what
 /// parse_mesh() and builtin_mesh() throw.
 RawMesh load_mesh(const std::string& word);
 
