@@ -82,6 +82,8 @@ TEST_CASE("every format carries the radius of the sphere that holds the body, th
   ok({"expand", "builtin:box:1,2,3", "--lmax", "4", "--device", "cpu", "-q", "--length-unit", "2km", "-o",
       folder / "km.gfc"});
   CHECK(*read_coefficient_set(folder / "km.gfc").brillouin_radius == Approx(2000 * corner).epsilon(1e-15));
+  ok({"convert", folder / "a.json", folder / "stated.json", "--length-unit", "2km", "-q"});
+  CHECK(*read_coefficient_set(folder / "stated.json").brillouin_radius == Approx(2000 * corner).epsilon(1e-15));
 }
 
 TEST_CASE("places are judged by the sphere that holds the body, whatever the reference radius of its file",

@@ -340,7 +340,9 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
                 {"exact_count", "of them by the polyhedron", double(s.exact_points)}};
   if (s.exact_points + s.far_points > 0) {
     found.rows.push_back({"far_count", "by its series, which is nearer there", double(s.far_points)});
-    found.rows.push_back({"exact_error", "estimated relative error of both", s.exact_error});
+    found.rows.push_back({"exact_error", "estimated relative error of both",
+                          std::isfinite(s.exact_error) ? Value(s.exact_error) : Value(), "",
+                          "none: the potential is 0"});
   }
   if (!input.body)
     found.rows.push_back({"reference_radius", "reference radius of the file", s.reference_radius, s.units.length});

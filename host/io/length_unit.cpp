@@ -115,6 +115,7 @@ void state_length_unit(CoefficientSet& set, double metres, const std::string& fi
     set.gm = set.mass ? *set.mass * volume * gravitational_constant_si
                       : *set.gm / set.gravitational_constant.value_or(1) * volume * gravitational_constant_si;
   scale(set.reference_radius, metres);
+  scale(set.brillouin_radius, metres);
   scale(set.mass, volume);
   scale(set.second_moment, volume * metres * metres);
   if (set.origin) *set.origin *= metres;

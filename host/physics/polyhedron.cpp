@@ -47,16 +47,25 @@ Polyhedron::Polyhedron(std::span<const Vec3> vertices, std::span<const Face> fac
   std::vector<Half> halves;
   halves.reserve(3 * faces.size());
   for (const Face& face : faces) {
-    const LongVec3 a = vertices_[face[0]], b = vertices_[face[1]], c = vertices_[face[2]];
-    const LongVec3 area = (b - a).cross(c - a);
+    const std::array<LongVec3, 3> x = {vertices_[face[0]], vertices_[face[1]], vertices_[face[2]]};
+    // From the corner between the two shorter sides: of needles too these are at right angles more often than not, and
+    // nothing cancels.
+    std::size_t k = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+      if ((x[(i + 1) % 3] - x[(i + 2) % 3]).squaredNorm() > (x[(k + 1) % 3] - x[(k + 2) % 3]).squaredNorm()) k = i;
+    const LongVec3 u = x[(k + 1) % 3] - x[k], v = x[(k + 2) % 3] - x[k];
+    const LongVec3 area = u.cross(v);
     const Real norm = area.norm();
     if (!(norm > 0)) continue; // a face without area has no gravity
     const LongVec3 normal = area / norm;
-    // Of the cross product, whose parts cancel in needles.
-    const Real rounding = 1 + (b - a).norm() * (c - a).norm() / norm;
+    const LongVec3 first = u.cwiseAbs(), second = v.cwiseAbs();
+    const LongVec3 products(first.y() * second.z() + first.z() * second.y(),
+                            first.z() * second.x() + first.x() * second.z(),
+                            first.x() * second.y() + first.y() * second.x());
+    const Real rounding = 1 + products.norm() / norm;
     sides_.push_back({face, normal, norm});
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = face[k], to = face[(k + 1) % 3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t from = face[i], to = face[(i + 1) % 3];
       const LongVec3 outward = (vertices_[to] - vertices_[from]).normalized().cross(normal);
       halves.push_back({std::min(from, to), std::max(from, to), normal * outward.transpose(), rounding});
     }
