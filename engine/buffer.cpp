@@ -84,6 +84,7 @@ VkBufferView Buffer::view(VkFormat format, std::uint64_t offset, std::uint64_t b
 }
 
 void Buffer::release() {
+  if (device_.lost()) return;
   for (const auto& [key, view] : views_) vkDestroyBufferView(device_.handle(), view, nullptr);
   if (handle_) vkDestroyBuffer(device_.handle(), handle_, nullptr);
   if (memory_) vkFreeMemory(device_.handle(), memory_, nullptr);

@@ -35,6 +35,13 @@ Device::Device(std::shared_ptr<Instance> instance, const PhysicalDevice& physica
 }
 
 Device::~Device() {
+  if (lost_) {
+    kernels_.clear(); // which leave what they made on it
+    // The instance, and its log that the validation layer writes to, live as long as the device: to the end of the process.
+    static auto* const left = new std::vector<std::shared_ptr<Instance>>;
+    left->push_back(std::move(instance_));
+    return;
+  }
   kernels_.clear();
   vkDestroyCommandPool(handle_, command_pool_, nullptr);
   vkDestroyDevice(handle_, nullptr);
@@ -59,6 +66,33 @@ void Device::check_alive() const {
   if (lost_)
     throw Error(Failure::device_lost, VK_ERROR_DEVICE_LOST,
                 fmt::format("the device {} was lost earlier; nothing more is run on it; try --device cpu", name_));
+}
+
+void Device::wait(VkFence fence, const std::string& what) {
+  std::uint32_t waited = 0, unheeded = 0;
+  for (;;) {
+    const VkResult result = vkWaitForFences(handle_, 1, &fence, VK_TRUE, patience_.slice_ns);
+    if (result == VK_SUCCESS) return;
+    if (result != VK_TIMEOUT) {
+      lost_ = true; // whatever the reason, the work may go on
+      check(result, what);
+    }
+    ++waited;
+    if (stop_ && stop_()) {
+      ++unheeded;
+      if (unheeded < patience_.after_stop) continue;
+      lost_ = true;
+      throw Error(Failure::stopped, result,
+                  fmt::format("stopped while the device {} did not end what it was given ({}); it is left to itself",
+                              name_, what));
+    }
+    if (waited < patience_.slices) continue;
+    lost_ = true;
+    throw Error(Failure::device_lost, result,
+                fmt::format("the device {} hangs: it could not {} while {:.0f} s were waited for it, where a second "
+                            "suffices; it is given up as lost and nothing more is run on it; try --device cpu",
+                            name_, what, double(patience_.slices) * double(patience_.slice_ns) * 1e-9));
+  }
 }
 
 int Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {

@@ -4,16 +4,27 @@
 #include "engine/instance.hpp"
 #include "engine/profile.hpp"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace cowgpu::engine {
 
 class Kernel;
 struct KernelInfo;
 
-/// Owns the VkDevice and the kernels made on it. Once the device is lost every further call throws Error(device_lost).
+/// How long a batch is waited for. It is bounded to well under a second of work; a minute without an end is a hang. Slices of
+/// waiting are counted, not the clock: while the process is suspended, or the clock jumps, none is waited.
+struct Patience {
+  std::uint64_t slice_ns = 100'000'000;
+  std::uint32_t slices = 600;    ///< after so many the device is given up as lost
+  std::uint32_t after_stop = 20; ///< after so many from a wish to stop on
+};
+
+/// Owns the VkDevice and the kernels made on it. Once the device is lost every further call throws Error(device_lost), and
+/// what was made on it is left as it is, to the end of the process: shaders that still run may use it.
 class Device {
 public:
   /// Throws Error(no_fp64) for a device that cannot compute here, Error(vulkan).
@@ -44,6 +55,17 @@ public:
   /// Throws Error(device_lost) if the device was lost earlier.
   void check_alive() const;
 
+  /// Nothing that was made on a lost device may be destroyed.
+  bool lost() const { return lost_; }
+
+  /// Waits for submitted work, `what`, that signals `fence`. Throws Error(device_lost) for a device that is lost or hangs,
+  /// Error(stopped) where the caller wants to stop and the work does not end; the device is lost then.
+  void wait(VkFence fence, const std::string& what);
+
+  void set_patience(const Patience& patience) { patience_ = patience; }
+  /// Asked after each slice of waiting; empty: never stops. Returns what was there before.
+  std::function<bool()> set_stop(std::function<bool()> stop) { return std::exchange(stop_, std::move(stop)); }
+
   /// A memory type that has all of `wanted`, -1 if there is none among `allowed`.
   int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
 
@@ -56,6 +78,8 @@ private:
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
   std::map<std::string, std::unique_ptr<Kernel>> kernels_;
   Profile profile_;
+  Patience patience_;
+  std::function<bool()> stop_;
   bool lost_ = false;
 };
 

@@ -48,6 +48,13 @@ Gpu::Gpu(const std::string& wanted, bool validation) {
 
 Gpu::~Gpu() = default;
 
+StopScope::StopScope(Gpu& gpu, std::function<bool()> stop)
+    : device_(gpu.device()), before_(device_.set_stop(std::move(stop))) {}
+
+StopScope::~StopScope() {
+  device_.set_stop(std::move(before_));
+}
+
 std::vector<std::string> Gpu::validation_messages() const {
   ValidationLog& log = device_->log();
   const std::lock_guard lock(log.mutex);

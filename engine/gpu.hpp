@@ -65,4 +65,18 @@ private:
   GpuFacts facts_;
 };
 
+/// While one lives, waits for the device ask `stop`. True: the caller wants to stop, which throws Error(stopped) between two
+/// batches, or after two seconds where a batch does not end.
+class StopScope {
+public:
+  StopScope(Gpu& gpu, std::function<bool()> stop);
+  ~StopScope();
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+
+private:
+  Device& device_;
+  std::function<bool()> before_;
+};
+
 } // namespace cowgpu::engine

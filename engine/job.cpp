@@ -8,8 +8,6 @@
 namespace cowgpu::engine {
 namespace {
 constexpr std::uint32_t most_bindings = 8;
-// A batch is bounded to well under a second of work; a minute without an end is a hang.
-constexpr std::uint64_t patience_ns = std::uint64_t(60) * 1000 * 1000 * 1000;
 } // namespace
 
 Job::Job(Device& device) : device_(device) {
@@ -40,6 +38,7 @@ Job::Job(Device& device) : device_(device) {
 }
 
 void Job::release() {
+  if (device_.lost()) return;
   vkDestroyQueryPool(device_.handle(), queries_, nullptr);
   vkDestroyDescriptorPool(device_.handle(), pool_, nullptr);
   vkDestroyFence(device_.handle(), fence_, nullptr);
@@ -155,9 +154,7 @@ void Job::run() {
   const std::string what =
       recorded_.empty() ? "copy" : fmt::format("run {} ({} dispatches)", recorded_.back(), recorded_.size());
   device_.check(vkQueueSubmit(device_.queue(), 1, &submit, fence_), what);
-  const VkResult result = vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, patience_ns);
-  // A hung device cannot be waited for: give it up as lost rather than free what it still uses.
-  device_.check(result == VK_TIMEOUT ? VK_ERROR_DEVICE_LOST : result, what);
+  device_.wait(fence_, what);
   device_.check(vkResetFences(device_.handle(), 1, &fence_), "reset a fence");
 
   std::vector<std::uint64_t> ticks(2 * recorded_.size());

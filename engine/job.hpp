@@ -37,7 +37,8 @@ public:
   /// Dispatches recorded since the last run().
   std::size_t dispatches() const { return recorded_.size(); }
 
-  /// Submits what was recorded and waits for it; the job can then record anew. Throws Error(device_lost), Error(vulkan).
+  /// Submits what was recorded and waits for it; the job can then record anew. Throws Error(device_lost),
+  /// Error(stopped), Error(vulkan).
   void run();
 
 private:

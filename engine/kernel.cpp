@@ -63,6 +63,7 @@ void Kernel::create(const KernelInfo& info) {
 }
 
 void Kernel::release() {
+  if (device_.lost()) return;
   vkDestroyPipeline(device_.handle(), pipeline_, nullptr);
   vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
   vkDestroyDescriptorSetLayout(device_.handle(), set_layout_, nullptr);

@@ -1,5 +1,7 @@
 #include "host/parallel.hpp"
 
+#include "host/signals.hpp"
+
 #include <sched.h>
 
 #include <algorithm>
@@ -40,6 +42,7 @@ void parallel_for(unsigned threads, std::size_t tasks, const std::function<void(
   };
   std::vector<std::jthread> pool;
   try {
+    const HeldSignals for_the_caller;
     for (unsigned t = 1; t < threads; ++t) pool.emplace_back(work, t);
   } catch (const std::system_error&) {
     // No more threads to be had: those there are do the work.

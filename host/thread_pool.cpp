@@ -1,6 +1,7 @@
 #include "host/thread_pool.hpp"
 
 #include "host/parallel.hpp"
+#include "host/signals.hpp"
 
 #include <system_error>
 #include <utility>
@@ -36,6 +37,7 @@ std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint
 ThreadPool::ThreadPool(unsigned threads) {
   if (threads == 0) threads = all_threads();
   workers_.reserve(threads - 1);
+  const HeldSignals for_the_caller;
   try {
     for (unsigned t = 1; t < threads; ++t) workers_.emplace_back([this, t] { serve(t); });
   } catch (const std::system_error&) {

@@ -117,6 +117,21 @@ TEST_CASE("markup in names and documents cannot leave its place in the page", "[
   CHECK(data["surfaces"][0]["distances"]["xyz"].empty());
 }
 
+TEST_CASE("a page holds what the parser read of a document, without its byte order mark", "[report][cli]") {
+  const Reports reports;
+  const std::string text = "{\"schema\": \"cowgpu.tip.v1\", \"input\": {}, \"units\": {},\n \"notes\": [\"</script>\"],"
+                           " \"z\": 1.5e3, \"a\": [-0.0, 1e-300, 12345678901234567]}";
+  write(reports.folder / "tip.json", "\xef\xbb\xbf" + text + "\n");
+  const ProgramRun run = reports.report({reports.folder / "cow.json", "--physics", reports.folder / "tip.json"});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const std::string data = reports.parts().second;
+  CHECK(data.find("\xef\xbb\xbf") == std::string::npos);
+  CHECK(data.find_first_of("<>&\n") == std::string::npos);
+  CHECK(json::parse(data)["physics"] == json::array({json::parse(text)}));
+  CHECK(data.find("\"z\":1500.0,\"a\":[-0.0,1e-300,12345678901234567]") != std::string::npos); // in the file's order
+}
+
 TEST_CASE("what is wrong with a report is said, and no page is written", "[report][cli]") {
   const Reports reports;
   const std::string cow = reports.folder / "cow.json", other = reports.folder / "other.json";
@@ -138,6 +153,17 @@ TEST_CASE("what is wrong with a report is said, and no page is written", "[repor
   refused({cow, "--physics", cow}, 3, "file-format", "no findings to show");
   write(other, "{\"schema\": \"cowgpu.tip.v1\"");
   refused({cow, "--physics", other}, 3, "file-syntax", "other.json");
+  const std::string whole = "{\"schema\": \"cowgpu.tip.v1\", \"input\": {}, \"units\": {}, \"notes\": []}";
+  for (const std::string& bad :
+       {whole + std::string(1, '\0'), whole + std::string("\0{", 2), std::string(1, '\0') + whole,
+        whole.substr(0, 9) + '\0' + whole.substr(9), whole + "\xef\xbb\xbf", whole + whole}) {
+    write(other, bad);
+    refused({cow, "--physics", other}, 3, "file-syntax", "other.json:1");
+  }
+  write(other, read_file(cow) + '\0');
+  refused({other}, 3, "file-syntax", "other.json");
+  write(other, "{\"schema\": \"cowgpu.tip.v1\", \"input\": {}, \"units\": {}, \"notes\": 5}");
+  refused({cow, "--physics", other}, 3, "file-format", "'notes' is a list");
   refused({cow, "--mesh", "builtin:nothing"}, 2, "bad-argument", "builtin:nothing");
   write(reports.folder / "report.html", "<html>");
   refused({cow}, 3, "file-format", "not the page");

@@ -1,6 +1,7 @@
 #include "host/cli/child.hpp"
 
 #include "host/error.hpp"
+#include "host/io/output_place.hpp"
 
 #include <fmt/format.h>
 
@@ -27,9 +28,25 @@ struct Actions {
   Actions(const Actions&) = delete;
   Actions& operator=(const Actions&) = delete;
 
-  void write_to(int descriptor, const std::filesystem::path& file) {
-    posix_spawn_file_actions_addopen(&actions, descriptor, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  void write_to(int descriptor, const Descriptor& file) {
+    posix_spawn_file_actions_adddup2(&actions, file.get(), descriptor);
   }
+};
+
+// The child hears SIGTERM, by which it is told to stop, also where whoever started this process has it ignored.
+struct Attributes {
+  posix_spawnattr_t attributes;
+  Attributes() {
+    posix_spawnattr_init(&attributes);
+    sigset_t heard;
+    sigemptyset(&heard);
+    sigaddset(&heard, SIGTERM);
+    posix_spawnattr_setsigdefault(&attributes, &heard);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  }
+  ~Attributes() { posix_spawnattr_destroy(&attributes); }
+  Attributes(const Attributes&) = delete;
+  Attributes& operator=(const Attributes&) = delete;
 };
 
 int exit_status(int status) {
@@ -59,14 +76,16 @@ int run_program(const std::vector<std::string>& arguments, const std::filesystem
   std::vector<char*> environment = {parent.data()};
   for (char** variable = environ; *variable; ++variable) environment.push_back(*variable);
   environment.push_back(nullptr);
+  const Descriptor out = open_anew(folder / output), err = open_anew(folder / errors);
+  const Attributes attributes;
   Actions actions;
   posix_spawn_file_actions_addchdir_np(&actions.actions, folder.c_str());
   posix_spawn_file_actions_addopen(&actions.actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  actions.write_to(STDOUT_FILENO, output);
-  actions.write_to(STDERR_FILENO, errors);
+  actions.write_to(STDOUT_FILENO, out);
+  actions.write_to(STDERR_FILENO, err);
   pid_t process = 0;
-  if (const int reason =
-          posix_spawn(&process, "/proc/self/exe", &actions.actions, nullptr, argv.data(), environment.data()))
+  if (const int reason = posix_spawn(&process, "/proc/self/exe", &actions.actions, &attributes.attributes, argv.data(),
+                                     environment.data()))
     throw Error(Fault::cannot_write, fmt::format("`cowgpu {}` could not be started in {}: {}", arguments[0],
                                                  folder.string(), std::strerror(reason)));
   bool told = false;

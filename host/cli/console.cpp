@@ -1,7 +1,9 @@
 #include "host/cli/console.hpp"
 
+#include "host/cli/stop.hpp"
 #include "host/error.hpp"
 #include "host/io/shown.hpp"
+#include "host/signals.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 
 namespace cowgpu::cli {
 
@@ -19,9 +22,33 @@ std::atomic<bool> stop_requested{false};
 
 namespace {
 
+std::atomic<int> stop_signal{0};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
+
+double seconds_now() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+// Who asks again is impatient. A signal that comes twice at once, to the process and to its group, is one wish.
 extern "C" void on_signal(int signal) {
+  constexpr double twice_at_once = 0.3;
+  static std::atomic<double> first_interrupt{0}, first_termination{0};
+  const int error = errno;
+  int none = 0;
+  stop_signal.compare_exchange_strong(none, signal);
   stop_requested = true;
-  std::signal(signal, SIG_DFL);
+  if (signal == SIGINT || signal == SIGTERM) {
+    double never = 0;
+    const double now = seconds_now();
+    if (!(signal == SIGINT ? first_interrupt : first_termination).compare_exchange_strong(never, now) &&
+        now - never > twice_at_once) {
+      std::signal(signal, SIG_DFL);
+      raise(signal); // which waits until this handler returns
+    }
+  }
+  errno = error;
 }
 
 // What moves the cursor: the line of progress alone.
@@ -46,12 +73,23 @@ void say(std::string_view text) {
 
 void catch_signals() {
   // Without SA_RESTART, so that a read that waits for a pipe ends too.
-  struct sigaction action {};
+  struct sigaction action {
+  }, there{};
   action.sa_handler = on_signal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : ending_signals())
+    if (sigaction(signal, nullptr, &there) == 0 && !(there.sa_flags & SA_SIGINFO) && there.sa_handler == SIG_DFL)
+      sigaction(signal, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+}
+
+int stop_exit_code() {
+  return stop_signal == 0 ? exit_code(Fault::interrupted) : 128 + stop_signal;
+}
+
+std::string stop_reason() {
+  const char* name = stop_signal == 0 || stop_signal == SIGINT ? nullptr : sigdescr_np(stop_signal);
+  return name ? fmt::format(" ({})", name) : "";
 }
 
 void write_stdout(std::string_view text) {

@@ -11,11 +11,12 @@
 
 namespace cowgpu::cli {
 
-/// Set by SIGINT and SIGTERM; long work stops soon after.
+/// Set by the signals that catch_signals() catches; long work stops soon after.
 extern std::atomic<bool> stop_requested;
 
-/// Catches SIGINT and SIGTERM once (a second one kills) and ignores SIGPIPE and SIGXFSZ, so that a closed pipe or a
-/// file-size limit becomes an error of the write.
+/// Catches the signals that end a process (ending_signals()), but those that whoever started it has ignored, as nohup does
+/// with SIGHUP and a shell with SIGINT in the background. A second SIGINT or SIGTERM kills. Ignores SIGPIPE and SIGXFSZ, so
+/// that a closed pipe or a file-size limit becomes an error of the write.
 void catch_signals();
 
 /// Puts /dev/null where standard input, output or error is closed, so that no file of ours gets its number; what stands

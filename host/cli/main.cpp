@@ -1,11 +1,14 @@
 #include "host/cli/child.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/stop.hpp"
 #include "host/error.hpp"
 #include "host/io/shown.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <new>
@@ -25,7 +28,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("cowgpu ") + version);
   app.require_subcommand(1);
   app.footer("Exit codes: 0 ok, 1 a numeric check failed, 2 usage, 3 bad input, 4 no or lost device, 5 input/output, "
-             "130 interrupted.\nNumbers are decimal and finite, with a point and perhaps an exponent (1e-3); whole "
+             "130 interrupted (128 + n by another signal n).\nNumbers are decimal and finite, with a point and perhaps "
+             "an exponent (1e-3); whole "
              "numbers are "
              "digits alone, after a sign perhaps (010 is ten).\nFirst steps: cowgpu expand --lmax 8; cowgpu expand "
              "MESH.off --lmax 512 -o moments.json");
@@ -101,8 +105,14 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const Error& error) {
     // Whatever fails once the user has asked to stop fails because of that.
-    const Fault fault = cli::stop_requested ? Fault::interrupted : error.fault();
-    return fail(name(fault).data(), error.what(), exit_code(fault));
+    const bool stopped = cli::stop_requested;
+    const Fault fault = stopped ? Fault::interrupted : error.fault();
+    const int code = fail(name(fault).data(), (error.what() + cli::stop_reason()).c_str(),
+                          stopped ? cli::stop_exit_code() : exit_code(fault));
+    if (!stopped && fault != Fault::device_lost) return code;
+    // A device that was given up may still run: the end of the process must not take anything from under its threads.
+    std::fflush(nullptr);
+    std::_Exit(code);
   } catch (const std::bad_alloc&) {
     return fail("too-large", "this machine has not enough memory for this; lower --lmax or take a smaller mesh", 3);
   } catch (const std::length_error&) {

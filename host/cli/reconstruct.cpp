@@ -92,6 +92,9 @@ void run(const Options& options, const Common& common) {
     throw Error(Fault::bad_argument, fmt::format("--resolution {} cannot show order {}; it must be at least the order",
                                                  options.resolution, largest));
   SurfaceOutputs outputs(options.output, options.format, orders.empty() ? 9 : orders.size(), "order");
+  for (std::size_t i = 0; outputs.any() && i < (orders.empty() ? 9 : orders.size()); ++i)
+    for (const std::string& input : {options.source.input, options.source.mesh})
+      refuse_mesh_as_output(input, outputs.path(order_key(orders.empty() ? int(i) : orders[i])));
   outputs.open(order_key(orders.empty() ? 0 : orders.front()));
 
   std::string note;

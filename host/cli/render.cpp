@@ -87,7 +87,8 @@ void run(const Options& given, const Common& common) {
   if (options.resolution > 0 && options.resolution < largest)
     throw Error(Fault::bad_argument, fmt::format("--resolution {} cannot show order {}; it must be at least the order",
                                                  options.resolution, largest));
-  refuse_mesh_as_output(options.source.input, options.output);
+  for (const std::string& input : {options.source.input, options.source.mesh})
+    refuse_mesh_as_output(input, options.output);
   AtomicFile file(options.output); // before long work: what cannot be written should fail now
 
   auto backend = open_backend(common, nullptr);

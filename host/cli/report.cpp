@@ -5,6 +5,7 @@
 #include "host/io/foreign_file.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/result_json.hpp"
+#include "host/io/shown.hpp"
 #include "host/io/surface_file.hpp"
 #include "host/report/page.hpp"
 
@@ -49,12 +50,13 @@ std::vector<SurfaceFile> read_surfaces(const std::string& path, const json& docu
   return files;
 }
 
-/// The text of a document of findings. It may be any JSON object that names its schema.
-std::string read_findings(const std::string& path) {
-  std::string text = read_input_file(path); // once: it may be a pipe
-  const json document = result_json::parse(path, text);
-  const json& schema = result_json::member(path, document, "schema");
-  if (!schema.is_string() || schema.get<std::string>().rfind("cowgpu.", 0) != 0)
+/// A document of findings. It may be any JSON object that names its schema.
+nlohmann::ordered_json read_findings(const std::string& path) {
+  nlohmann::ordered_json document = result_json::parse_in_order(path, read_input_file(path));
+  const std::string schema = document.is_object() && document.contains("schema") && document["schema"].is_string()
+                                 ? document["schema"].get<std::string>()
+                                 : "";
+  if (schema.rfind("cowgpu.", 0) != 0)
     throw Error(Fault::file_format, fmt::format("{}: this JSON is no document of cowgpu; take what `cowgpu tensors "
                                                 "--json`, `radiate --json` and the like print",
                                                 path));
@@ -63,8 +65,12 @@ std::string read_findings(const std::string& path) {
       throw Error(Fault::file_format,
                   fmt::format("{}: a {} has no findings to show (no member '{}'); take what `cowgpu tensors --json`, "
                               "`radiate --json` and the like print",
-                              path, schema.get<std::string>(), member));
-  return text;
+                              path, shown(schema, 60), member));
+  if (!document["input"].is_object() || !document["units"].is_object() || !document["notes"].is_array())
+    throw Error(
+        Fault::file_format,
+        fmt::format("{}: in a document of findings 'input' and 'units' are objects and 'notes' is a list", path));
+  return document;
 }
 
 /// The distances of all orders from the mesh.
@@ -91,6 +97,7 @@ void run(const Options& options, const Common& common) {
     throw Error(Fault::bad_argument,
                 fmt::format("-o {}: the page is HTML, and its name must end in .html", options.output));
   refuse_same_file(options.result, options.output);
+  refuse_mesh_as_output(options.mesh, options.output);
   for (const std::string& path : options.physics) refuse_same_file(path, options.output);
   const std::string page = read_page();
   AtomicFile file(options.output);

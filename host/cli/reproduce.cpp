@@ -42,7 +42,7 @@ struct Options {
 // One run at a time in a folder.
 class Lock {
 public:
-  explicit Lock(const fs::path& file) : fd_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  explicit Lock(const fs::path& file) : fd_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666)) {
     if (fd_ < 0) throw Error(Fault::cannot_write, fmt::format("{}: {}", file.string(), std::strerror(errno)));
     if (flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
     close(fd_);

@@ -43,7 +43,7 @@ public:
   const DeviceFacts& facts() const override { return facts_; }
 
   Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
-    return gpu::translated([&] { return gpu::moments(*gpu_, shape_, problem, monitor, report); });
+    return gpu::watched(*gpu_, monitor, [&] { return gpu::moments(*gpu_, shape_, problem, monitor, report); });
   }
 
   MemoryNeed moments_memory(const MomentProblem& problem) const override {
@@ -60,7 +60,7 @@ public:
 
   SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
                        Monitor& monitor, RunReport* report) override {
-    return gpu::translated([&] { return gpu::sample(*gpu_, positions, faces, grid, monitor, report); });
+    return gpu::watched(*gpu_, monitor, [&] { return gpu::sample(*gpu_, positions, faces, grid, monitor, report); });
   }
 
   MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const override {
@@ -84,7 +84,8 @@ public:
   }
 
   PotentialField potential(const PotentialProblem& problem, Monitor& monitor, RunReport* report) override {
-    return gpu::translated([&] { return gpu::potential(*gpu_, iteration_budget_, problem, monitor, report); });
+    return gpu::watched(*gpu_, monitor,
+                        [&] { return gpu::potential(*gpu_, iteration_budget_, problem, monitor, report); });
   }
 
   MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives) const override {
@@ -92,7 +93,7 @@ public:
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {
-    return gpu::translated([&] { return gpu::render(*gpu_, iteration_budget_, scene, monitor); });
+    return gpu::watched(*gpu_, monitor, [&] { return gpu::render(*gpu_, iteration_budget_, scene, monitor); });
   }
 
   double measured_peak() override {

@@ -22,6 +22,7 @@ public:
   ClosestPoints closest(std::span<const Vec3> queries, const ClosestOptions& options, Monitor& monitor,
                         ClosestReport* report) override {
     cpu::ClosestCall call(tree_, queries, options, 0);
+    const engine::StopScope stop(faces_.device(), [&monitor] { return monitor.stopped(); });
     faces_.device().take_profile();
     for (std::size_t begin = 0; begin < queries.size(); begin += batch) {
       check_stop(monitor);

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace cowgpu::gpu {
 
@@ -16,7 +18,13 @@ void prepare_environment() {
   const auto folder = base / "cowgpu" / (std::string("shaders") + (width ? std::string("-") + width : ""));
   std::error_code failed; // without a cache everything works, only slower
   std::filesystem::create_directories(folder, failed);
-  if (!failed) setenv("MESA_SHADER_CACHE_DIR", folder.c_str(), 0);
+  struct stat status {};
+  if (failed || ::stat(folder.c_str(), &status) != 0) return;
+  // The cache holds machine code: another user's is not run.
+  if (status.st_uid == ::geteuid() && !(status.st_mode & S_IWOTH))
+    setenv("MESA_SHADER_CACHE_DIR", folder.c_str(), 0);
+  else
+    setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
 }
 
 } // namespace cowgpu::gpu

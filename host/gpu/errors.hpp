@@ -1,8 +1,9 @@
 // From the engine's failures to the host's faults.
 #pragma once
 
-#include "engine/error.hpp"
+#include "engine/gpu.hpp"
 #include "host/error.hpp"
+#include "host/monitor.hpp"
 
 namespace cowgpu::gpu {
 
@@ -28,6 +29,13 @@ auto translated(const Call& call) {
   } catch (const engine::Error& error) {
     throw Error(fault_of(error.failure()), error.what());
   }
+}
+
+/// Runs `call`; waits for the device end soon once the monitor says stop.
+template <class Call>
+auto watched(engine::Gpu& gpu, const Monitor& monitor, const Call& call) {
+  const engine::StopScope stop(gpu, [&monitor] { return monitor.stopped(); });
+  return translated(call);
 }
 
 } // namespace cowgpu::gpu

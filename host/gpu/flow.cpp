@@ -277,6 +277,7 @@ public:
   FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
                   Monitor& monitor, FlowReport* report) override {
     cpu::FlowCall call(surface_, starts, normals, options, 0);
+    const engine::StopScope stop(faces_.device(), [&monitor] { return monitor.stopped(); });
     faces_.device().take_profile();
     engine::FlowNumbers numbers;
     numbers.time = options.time;

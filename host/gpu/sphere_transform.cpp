@@ -80,6 +80,7 @@ private:
   /// Calls work(first, n, hook) for groups of fields that go together, and fills the report.
   template <class GroupWork>
   void in_groups(int fields, const char* what, Monitor& monitor, TransformReport& report, const GroupWork& work) {
+    const engine::StopScope stop(*gpu_, [&monitor] { return monitor.stopped(); });
     gpu_->take_profile();
     std::uint32_t done = 0;
     const auto all = std::uint32_t(fields);

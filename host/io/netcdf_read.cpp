@@ -2,6 +2,7 @@
 #include "host/io/foreign_file.hpp"
 #include "host/io/netcdf.hpp"
 #include "host/io/shown.hpp"
+#include "host/signals.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -180,7 +181,9 @@ void limit(int what, std::uint64_t value) {
 
 [[noreturn]] void run_reader(std::string& bytes, int results, int reasons) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGXCPU}) std::signal(signal, SIG_DFL);
+  for (const int signal : ending_signals())
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE}) std::signal(signal, SIG_DFL);
   const int null = open("/dev/null", O_WRONLY);
   if (null >= 0) dup2(null, STDERR_FILENO);
   limit(RLIMIT_CORE, 0);

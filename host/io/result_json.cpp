@@ -42,6 +42,26 @@ void check_brackets(const std::string& name, const std::string& bytes) {
                                                 name, open, bytes.size()));
 }
 
+[[noreturn]] void refuse(const std::string& name, const std::string& bytes, std::size_t byte) {
+  const auto line = 1 + std::count(bytes.begin(), bytes.begin() + std::ptrdiff_t(std::min(byte, bytes.size())), '\n');
+  throw Error(Fault::file_syntax, fmt::format("{}:{}: this breaks the grammar of JSON (byte {}{})", name, line, byte,
+                                              byte > bytes.size() ? ", where the file ends" : ""));
+}
+
+template <class Json>
+Json parse_as(const std::string& name, const std::string& bytes) {
+  // The parser takes a zero byte between two words for the end, and reads no further.
+  if (const std::size_t zero = bytes.find('\0'); zero != std::string::npos) refuse(name, bytes, zero + 1);
+  check_brackets(name, bytes);
+  try {
+    return Json::parse(bytes);
+  } catch (const typename Json::parse_error& error) {
+    refuse(name, bytes, error.byte);
+  } catch (const typename Json::exception&) { // a number beyond a double
+    throw Error(Fault::file_syntax, fmt::format("{}: this JSON holds a number that fits no double", name));
+  }
+}
+
 } // namespace
 
 json parse(const std::filesystem::path& path) {
@@ -49,17 +69,11 @@ json parse(const std::filesystem::path& path) {
 }
 
 json parse(const std::string& name, const std::string& bytes) {
-  check_brackets(name, bytes);
-  try {
-    return json::parse(bytes);
-  } catch (const json::parse_error& error) {
-    const auto line =
-        1 + std::count(bytes.begin(), bytes.begin() + std::ptrdiff_t(std::min(error.byte, bytes.size())), '\n');
-    throw Error(Fault::file_syntax, fmt::format("{}:{}: this breaks the grammar of JSON (byte {}{})", name, line,
-                                                error.byte, error.byte > bytes.size() ? ", where the file ends" : ""));
-  } catch (const json::exception&) { // a number beyond a double
-    throw Error(Fault::file_syntax, fmt::format("{}: this JSON holds a number that fits no double", name));
-  }
+  return parse_as<json>(name, bytes);
+}
+
+nlohmann::ordered_json parse_in_order(const std::string& name, const std::string& bytes) {
+  return parse_as<nlohmann::ordered_json>(name, bytes);
 }
 
 json read(const std::filesystem::path& path) {

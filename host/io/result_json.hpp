@@ -14,8 +14,11 @@ namespace cowgpu::result_json {
 /// The file's document, of any kind. Throws Error(cannot_read, too_large), file_syntax where it is no JSON.
 nlohmann::json parse(const std::filesystem::path& path);
 
-/// The same of bytes that were read; `name` is the file's.
+/// The same of bytes that were read; `name` is the file's. A byte order mark before the document is passed over; zero bytes
+/// are refused.
 nlohmann::json parse(const std::string& name, const std::string& bytes);
+/// The same with the members of objects as they stand.
+nlohmann::ordered_json parse_in_order(const std::string& name, const std::string& bytes);
 
 /// A file; Error(file_format) where it is another document than a cowgpu.result.v1.
 nlohmann::json read(const std::filesystem::path& path);

@@ -1,6 +1,7 @@
 #include "host/map/solve.hpp"
 
 #include "host/error.hpp"
+#include "host/signals.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
@@ -9,6 +10,7 @@
 #include <metis.h>
 
 #include <cmath>
+#include <mutex>
 #include <type_traits>
 
 namespace cowgpu {
@@ -18,9 +20,21 @@ namespace {
 using Permutation = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
 using Factor = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::NaturalOrdering<int>>;
 
-Permutation nested_dissection(const SparseMatrix& matrix, const std::string& what) {
+// While METIS runs, SIGTERM leads to a handler of its own, which jumps away and calls it a lack of memory. The signal waits for
+// the end; and there is one METIS at a time, so that the handlers put back are the program's.
+bool order_by_metis(idx_t size, std::vector<idx_t>& begin, std::vector<idx_t>& neighbours, std::vector<idx_t>& order,
+                    std::vector<idx_t>& position) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  const HeldSignals until_the_end;
+  const KeptAction termination(SIGTERM), abortion(SIGABRT); // METIS puts handlers back for one signal only
+  return METIS_NodeND(&size, begin.data(), neighbours.data(), nullptr, nullptr, order.data(), position.data()) ==
+         METIS_OK;
+}
+
+Permutation nested_dissection(const SparseMatrix& matrix, const std::string& what, const Monitor& monitor) {
   static_assert(std::is_same_v<idx_t, int>, "METIS with 32-bit indices");
-  idx_t size = int(matrix.cols());
+  const idx_t size = int(matrix.cols());
   std::vector<idx_t> begin{0}, neighbours, order(matrix.cols()), position(matrix.cols());
   begin.reserve(std::size_t(matrix.cols()) + 1);
   neighbours.reserve(std::size_t(matrix.nonZeros()));
@@ -29,7 +43,9 @@ Permutation nested_dissection(const SparseMatrix& matrix, const std::string& wha
       if (entry.row() != column) neighbours.push_back(int(entry.row()));
     begin.push_back(idx_t(neighbours.size()));
   }
-  if (METIS_NodeND(&size, begin.data(), neighbours.data(), nullptr, nullptr, order.data(), position.data()) != METIS_OK)
+  const bool done = order_by_metis(size, begin, neighbours, order, position);
+  check_stop(monitor);
+  if (!done)
     throw Error(Fault::map_failed,
                 fmt::format("METIS could not order the {} unknowns of {}: most likely memory ran out", size, what));
   return Permutation(Eigen::Map<const Eigen::VectorXi>(position.data(), size));
@@ -113,8 +129,8 @@ SymmetricSolver::SymmetricSolver(const SparseMatrix& matrix, std::string what, O
   constexpr const char* phase = "solving a linear system";
   monitor.progress(phase, 0);
   if (matrix.cols() > 0)
-    state_->order =
-        ordering == Ordering::nested_dissection ? nested_dissection(matrix, state_->what) : minimum_degree(matrix);
+    state_->order = ordering == Ordering::nested_dissection ? nested_dissection(matrix, state_->what, monitor)
+                                                            : minimum_degree(matrix);
   SparseMatrix permuted(matrix.rows(), matrix.cols());
   permuted.selfadjointView<Eigen::Upper>() = matrix.selfadjointView<Eigen::Upper>().twistedBy(state_->order);
   state_->factor.analyzePattern(permuted);

@@ -229,7 +229,7 @@ std::string page_data(const PageDocument& document) {
   text += "\"physics\":[";
   for (std::size_t i = 0; i < document.physics.size(); ++i) {
     if (i > 0) text += ',';
-    append_escaped(text, document.physics[i]);
+    append_escaped(text, compact(document.physics[i]));
   }
   return text + "]}";
 }

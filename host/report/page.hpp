@@ -5,7 +5,7 @@
 #include "host/spectrum/reconstruct.hpp"
 #include "host/types.hpp"
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cstdint>
@@ -34,7 +34,7 @@ struct PageSurface {
   std::array<std::vector<PageDistances>, 2> distances; ///< by SurfaceFields, then order; empty where no mesh is known
 };
 
-/// What the page shows. Documents are text as it stands in their files.
+/// What the page shows.
 struct PageDocument {
   const nlohmann::json* result = nullptr; ///< cowgpu.result.v1
   SphereGrid grid;                        ///< Clenshaw-Curtis: where the surfaces' vertices lie
@@ -42,7 +42,7 @@ struct PageDocument {
   std::string mesh_name;          ///< of the true body; empty where it is not known
   std::span<const Vec3> vertices; ///< of it, where it is shown
   std::span<const Face> faces;
-  std::vector<std::string> physics; ///< documents of `cowgpu tensors`, `radiate` ...: valid JSON each
+  std::vector<nlohmann::ordered_json> physics; ///< documents of `cowgpu tensors`, `radiate` ...
   std::vector<std::string> notes;
   std::vector<std::string> command;
 };

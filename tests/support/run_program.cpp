@@ -49,6 +49,8 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const ProgramO
     dup2(err.ends[1], STDERR_FILENO);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
     if (options.close_stderr) close(STDERR_FILENO);
+    // A test that runs in the background of a script has SIGINT ignored.
+    signal(SIGINT, SIG_DFL);
     execv(argv[0], argv.data());
     _exit(127);
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <limits>
 
 namespace cowgpu::test {
 namespace {
@@ -14,12 +15,16 @@ constexpr std::array<VkResult, vulkan_calls> results = {
     VK_ERROR_OUT_OF_POOL_MEMORY,   VK_ERROR_OUT_OF_HOST_MEMORY, VK_ERROR_OUT_OF_DEVICE_MEMORY,
     VK_ERROR_DEVICE_LOST,          VK_ERROR_DEVICE_LOST,        VK_TIMEOUT};
 
-std::array<std::atomic<int>, vulkan_calls> seen_calls, fails_at;
-std::atomic<int> memory = 0, buffers = 0;
+std::array<std::atomic<int>, vulkan_calls> seen_calls, fails_at, fails_until;
+std::atomic<int> memory = 0, buffers = 0, destroyed = 0;
+std::atomic<bool> failed = false;
 
 bool fails(VulkanCall call) {
   const auto c = std::size_t(call);
-  return seen_calls[c]++ == fails_at[c];
+  const int n = seen_calls[c]++;
+  if (n < fails_at[c] || n >= fails_until[c]) return false;
+  failed = true;
+  return true;
 }
 
 // One of the pointers, and what stands in its place.
@@ -50,11 +55,15 @@ void take_back(VkResult(VKAPI_PTR*& slot)(Arguments...)) {
 PFN_vkWaitForFences real_wait;
 PFN_vkFreeMemory real_free;
 PFN_vkDestroyBuffer real_destroy;
+PFN_vkDestroyFence real_destroy_fence;
+PFN_vkDestroyPipeline real_destroy_pipeline;
+PFN_vkDestroyDevice real_destroy_device;
 
-// The work is over when the loss is told: what the device still uses must not be freed.
+// The work is over when the loss is told, so that what is done wrong then is found by these tests and not by a crash.
 VKAPI_ATTR VkResult VKAPI_CALL wait_stand_in(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all,
                                              std::uint64_t timeout) {
   const VkResult result = real_wait(device, count, fences, all, timeout);
+  if (result == VK_TIMEOUT) return result; // a slice of a longer wait
   if (fails(VulkanCall::wait)) return results[std::size_t(VulkanCall::wait)];
   if (fails(VulkanCall::hang)) return results[std::size_t(VulkanCall::hang)];
   return result;
@@ -63,12 +72,41 @@ VKAPI_ATTR VkResult VKAPI_CALL wait_stand_in(VkDevice device, std::uint32_t coun
 VKAPI_ATTR void VKAPI_CALL free_stand_in(VkDevice device, VkDeviceMemory handle,
                                          const VkAllocationCallbacks* callbacks) {
   if (handle) --memory;
+  destroyed += handle && failed;
   real_free(device, handle, callbacks);
 }
 
 VKAPI_ATTR void VKAPI_CALL destroy_stand_in(VkDevice device, VkBuffer handle, const VkAllocationCallbacks* callbacks) {
   if (handle) --buffers;
+  destroyed += handle && failed;
   real_destroy(device, handle, callbacks);
+}
+
+VKAPI_ATTR void VKAPI_CALL fence_stand_in(VkDevice device, VkFence handle, const VkAllocationCallbacks* callbacks) {
+  destroyed += handle && failed;
+  real_destroy_fence(device, handle, callbacks);
+}
+
+VKAPI_ATTR void VKAPI_CALL pipeline_stand_in(VkDevice device, VkPipeline handle,
+                                             const VkAllocationCallbacks* callbacks) {
+  destroyed += handle && failed;
+  real_destroy_pipeline(device, handle, callbacks);
+}
+
+VKAPI_ATTR void VKAPI_CALL device_stand_in(VkDevice device, const VkAllocationCallbacks* callbacks) {
+  destroyed += failed;
+  real_destroy_device(device, callbacks);
+}
+
+template <class Function>
+void put_destroyer(Function& slot, Function& real, Function stand_in) {
+  real = slot;
+  slot = stand_in;
+}
+
+template <class Function>
+void take_back_destroyer(Function& slot, Function real, Function stand_in) {
+  if (slot == stand_in) slot = real;
 }
 
 } // namespace
@@ -94,10 +132,11 @@ VulkanFaults::VulkanFaults() {
   put<VulkanCall::submit>(vkQueueSubmit);
   real_wait = vkWaitForFences;
   vkWaitForFences = wait_stand_in;
-  real_free = vkFreeMemory;
-  vkFreeMemory = free_stand_in;
-  real_destroy = vkDestroyBuffer;
-  vkDestroyBuffer = destroy_stand_in;
+  put_destroyer(vkFreeMemory, real_free, free_stand_in);
+  put_destroyer(vkDestroyBuffer, real_destroy, destroy_stand_in);
+  put_destroyer(vkDestroyFence, real_destroy_fence, fence_stand_in);
+  put_destroyer(vkDestroyPipeline, real_destroy_pipeline, pipeline_stand_in);
+  put_destroyer(vkDestroyDevice, real_destroy_device, device_stand_in);
 }
 
 VulkanFaults::~VulkanFaults() {
@@ -112,18 +151,29 @@ VulkanFaults::~VulkanFaults() {
   take_back<VulkanCall::fence>(vkCreateFence);
   take_back<VulkanCall::submit>(vkQueueSubmit);
   if (vkWaitForFences == wait_stand_in) vkWaitForFences = real_wait;
-  if (vkFreeMemory == free_stand_in) vkFreeMemory = real_free;
-  if (vkDestroyBuffer == destroy_stand_in) vkDestroyBuffer = real_destroy;
+  take_back_destroyer(vkFreeMemory, real_free, free_stand_in);
+  take_back_destroyer(vkDestroyBuffer, real_destroy, destroy_stand_in);
+  take_back_destroyer(vkDestroyFence, real_destroy_fence, fence_stand_in);
+  take_back_destroyer(vkDestroyPipeline, real_destroy_pipeline, pipeline_stand_in);
+  take_back_destroyer(vkDestroyDevice, real_destroy_device, device_stand_in);
 }
 
-void VulkanFaults::arm(VulkanCall call, int n) {
+void VulkanFaults::arm(VulkanCall call, int n, int times) {
   disarm();
+  failed = false;
+  destroyed = 0;
   fails_at[std::size_t(call)] = n;
+  fails_until[std::size_t(call)] =
+      times > std::numeric_limits<int>::max() - n ? std::numeric_limits<int>::max() : n + times;
 }
 
 void VulkanFaults::disarm() {
-  for (auto& seen : seen_calls) seen = 0;
-  for (auto& at : fails_at) at = -1;
+  for (auto* list : {&seen_calls, &fails_at, &fails_until})
+    for (auto& number : *list) number = 0;
+}
+
+int VulkanFaults::destroyed_since() const {
+  return destroyed;
 }
 
 int VulkanFaults::seen(VulkanCall call) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -20,9 +21,10 @@ enum class VulkanCall {
   fence,    ///< vkCreateFence: out of device memory
   submit,   ///< vkQueueSubmit: device lost, nothing is run
   wait,     ///< vkWaitForFences: device lost, after it has waited
-  hang,     ///< vkWaitForFences: timeout, after it has waited
+  hang,     ///< vkWaitForFences: timeout, also once the fence is signalled
 };
 inline constexpr std::size_t vulkan_calls = 12;
+inline constexpr int for_ever = std::numeric_limits<int>::max();
 std::string_view name(VulkanCall call);
 
 /// While one lives, Vulkan calls of this process pass through it. Made after the last device was opened (opening one loads
@@ -34,14 +36,16 @@ public:
   VulkanFaults(const VulkanFaults&) = delete;
   VulkanFaults& operator=(const VulkanFaults&) = delete;
 
-  /// The n-th call from now on, counted from 0, fails; the others do not. Counts start anew.
-  void arm(VulkanCall call, int n);
+  /// The n-th call from now on, counted from 0, and `times` - 1 after it fail; the others do not. Counts start anew.
+  void arm(VulkanCall call, int n, int times = 1);
   void disarm();
   /// Calls since then.
   int seen(VulkanCall call) const;
   /// Allocations and buffers that were made and not freed while this lived.
   int live_memory() const;
   int live_buffers() const;
+  /// Allocations, buffers, fences, pipelines and devices destroyed since the call that was armed last failed.
+  int destroyed_since() const;
 };
 
 } // namespace cowgpu::test

@@ -119,6 +119,15 @@ function fillCoefficients(panel) {
   draw();
 }
 
+/// A document that is not as expected costs its own place, not the tab.
+function shown(document) {
+  try {
+    return findings(document);
+  } catch (error) {
+    return el("p", { class: "note" }, `A document (${String(document?.schema)}) cannot be shown: ${error.message}`);
+  }
+}
+
 function fillPhysics(panel) {
   if (data.physics.length === 0)
     panel.append(
@@ -128,7 +137,7 @@ function fillPhysics(panel) {
         "No physics was put in. For instance: cowgpu tensors MESH --json > tensors.json, then cowgpu report with --physics tensors.json.",
       ),
     );
-  panel.append(...data.physics.map(findings));
+  panel.append(...data.physics.map(shown));
 }
 
 /// Fills the page's tabs from the document.

@@ -70,7 +70,10 @@ before(async () => {
   renamed.command.push(hostile);
   renamed.timings.total = null;
   writeFileSync(file("hostile.json"), JSON.stringify(renamed));
-  run("report", file("hostile.json"), "--physics", file("tip.json"), "-q", "-o", file("hostile.html"));
+  writeFileSync(file("marked.json"), "\ufeff" + JSON.stringify(findings)); // a byte order mark
+  writeFileSync(file("odd.json"), JSON.stringify({ ...findings, paper: [null] }));
+  run("report", file("hostile.json"), "--physics", file("marked.json"), "-q", "-o", file("hostile.html"));
+  run("report", file("hostile.json"), "--physics", file("odd.json"), "--physics", file("tip.json"), "-q", "-o", file("odd.html"));
   run("expand", "builtin:box:1,2,3", "--lmax", "6", "-q", "-o", file("box.json"));
   run("report", file("box.json"), "-q", "-o", file("box.html"));
   run("report", file("box.json"), "--mesh", "builtin:box:1,2,3", "-q", "-o", file("box-mesh.html"));
@@ -393,6 +396,15 @@ test("nothing on the page is wider than a phone", async () => {
     await settled(page);
     assert.ok((await page.evaluate(() => document.scrollingElement.scrollWidth)) <= 360, tab);
   }
+  await page.close();
+});
+
+test("a document that cannot be shown leaves the others", async () => {
+  const page = await open("odd.html");
+  await page.click("#tab-physics");
+  await settled(page);
+  assert.match(await words(page, "#panel-physics"), /cannot be shown.*torquenot known N m/s);
+  assert.deepEqual(page.said, []);
   await page.close();
 });
 
