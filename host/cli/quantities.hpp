@@ -1,11 +1,11 @@
 // Words of the command line that stand for quantities: axes, rotations, numbers with units, masses in the sky.
 #pragma once
 
+#include "host/cli/command_line.hpp"
 #include "host/physics/point_mass.hpp"
 #include "host/types.hpp"
 #include "host/units.hpp"
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 
 #include <optional>
