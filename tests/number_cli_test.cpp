@@ -16,7 +16,9 @@ namespace {
 struct NumericOption {
   std::vector<std::string> command; // "transform", "roundtrip"
   std::string name, type;           // "--lmax", "L:INT in [0 - 8192]"
-  bool integer() const { return type.find("INT") != std::string::npos; }
+  bool integer() const {
+    return type.starts_with("INT") || type.starts_with("UINT") || type.find("INT in [") != std::string::npos;
+  }
 };
 
 std::string without(std::string text, const std::string& what) {
@@ -63,8 +65,8 @@ std::string complaint(const NumericOption& option, const std::string& value) {
 }
 
 bool takes(const NumericOption& option, const std::string& value) {
-  return complaint(option, value).find(option.name + ":") == std::string::npos &&
-         complaint(option, value).find("onvert") == std::string::npos;
+  const std::string said = complaint(option, value);
+  return said.find(option.name + ":") == std::string::npos && said.find("Could not convert") == std::string::npos;
 }
 
 } // namespace

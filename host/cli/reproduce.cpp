@@ -100,7 +100,7 @@ std::string other_mesh(const Stage& stage, const Run& run) {
   for (const std::string& file : files) {
     if (!file.ends_with(".json")) continue;
     const nlohmann::json document = result_json::parse(fs::path(run.options.folder) / file);
-    for (const char* member : {"/mesh/sha256", "/input/sha256"}) {
+    for (const char* member : {"/mesh/sha256", "/input/sha256", "/sha256"}) {
       const nlohmann::json::json_pointer where(member);
       if (document.contains(where) && document.at(where) != run.mesh_hash)
         return fmt::format("the mesh is another one by now: {} is of sha256 {}, and this run of {}", file,
