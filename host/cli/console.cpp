@@ -1,6 +1,7 @@
 #include "host/cli/console.hpp"
 
 #include "host/error.hpp"
+#include "host/io/shown.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -23,6 +24,11 @@ extern "C" void on_signal(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+// What moves the cursor: the line of progress alone.
+void say_raw(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
 [[noreturn]] void stdout_failed() {
   throw Error(Fault::cannot_write, fmt::format("standard output cannot be written: {}", std::strerror(errno)));
 }
@@ -35,7 +41,7 @@ void open_standard_streams() {
 }
 
 void say(std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stderr);
+  say_raw(terminal_text(text));
 }
 
 void catch_signals() {
@@ -50,7 +56,8 @@ void catch_signals() {
 
 void write_stdout(std::string_view text) {
   if (stop_requested) throw Error(Fault::interrupted, "interrupted while the result was written");
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) stdout_failed();
+  const std::string safe = terminal_text(text);
+  if (std::fwrite(safe.data(), 1, safe.size(), stdout) != safe.size()) stdout_failed();
 }
 
 void flush_stdout() {
@@ -81,7 +88,7 @@ void ConsoleMonitor::progress(const char* what, double fraction) {
   }
   constexpr int width = 30;
   const int full = int(width * fraction);
-  say(fmt::format("\r{} [{}{}] {:3.0f} %, {:.0f} s, about {:.0f} s left\033[K", what,
+  say_raw(fmt::format("\r{} [{}{}] {:3.0f} %, {:.0f} s, about {:.0f} s left\033[K", what,
                   std::string(std::size_t(full), '#'), std::string(std::size_t(width - full), ' '), 100 * fraction,
                   elapsed, left));
   std::fflush(stderr);
@@ -89,7 +96,7 @@ void ConsoleMonitor::progress(const char* what, double fraction) {
 }
 
 void ConsoleMonitor::clear() {
-  if (shown_) say("\r\033[K");
+  if (shown_) say_raw("\r\033[K");
   std::fflush(stderr);
   shown_ = false;
 }

@@ -22,10 +22,11 @@ void catch_signals();
 /// for standard output cannot be written, which is reported like any other failure.
 void open_standard_streams();
 
-/// Writes to standard error. Nobody is left to tell if that fails, so it is ignored.
+/// Writes to standard error, as terminal_text() has it: whatever names and remarks a text holds, a terminal obeys none of
+/// it. Nobody is left to tell if that fails, so it is ignored.
 void say(std::string_view text);
 
-/// Writes to standard output; Error(cannot_write) if it is closed or full, Error(interrupted) once a stop is requested.
+/// Writes to standard output, as terminal_text() has it; Error(cannot_write) if it is closed or full, Error(interrupted) once a stop is requested.
 void write_stdout(std::string_view text);
 /// Flushes standard output, with the same error.
 void flush_stdout();

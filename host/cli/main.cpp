@@ -1,10 +1,12 @@
 #include "host/cli/child.hpp"
 #include "host/cli/commands.hpp"
 #include "host/error.hpp"
+#include "host/io/shown.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
 
+#include <cstring>
 #include <new>
 
 using namespace cowgpu;
@@ -12,7 +14,7 @@ using namespace cowgpu;
 namespace {
 
 int fail(const char* name, const char* what, int code) {
-  cli::say(fmt::format("cowgpu: error [{}]: {}\n", name, what));
+  cli::say(fmt::format("cowgpu: error [{}]: {}\n", name, one_line(what)));
   return code;
 }
 
@@ -47,6 +49,15 @@ int run(int argc, char** argv) {
   cli::add_render(app, common);
   cli::add_bench(app, common);
   cli::add_manual(app);
+  // A name with one would break every line that tells of it.
+  for (int i = 1; i < argc; ++i)
+    if (std::strpbrk(argv[i], "\r\n"))
+      return fail(name(Fault::bad_argument).data(),
+                  fmt::format("argument {}, '{}', holds a line end, and no option and no file that this program takes "
+                              "does; rename the file",
+                              i, shown(argv[i], 60))
+                      .c_str(),
+                  2);
   if (argc > 1 && argv[1][0] != '-') {
     std::string there;
     bool known = false;

@@ -4,7 +4,9 @@
 #include "host/cli/order_list.hpp"
 #include "host/cli/surface_source.hpp"
 #include "host/error.hpp"
+#include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
+#include "host/io/coefficient_metadata.hpp"
 #include "host/io/result_json.hpp"
 #include "host/io/surface_file.hpp"
 #include "host/spectrum/convert.hpp"
@@ -39,12 +41,6 @@ int resolution_of(const TipChoice& choice, int order) {
                   file, what));
 }
 
-double removed_mean(const CoefficientSet& set, const std::string& field) {
-  for (const auto& [key, text] : set.remarks)
-    if (key == "removed_mean_" + field) return std::stod(text);
-  return 0;
-}
-
 // Any format: the columns of `cowgpu expand -o FILE.csv` are named after their expansion.
 CoefficientSet read_surface_set(const std::string& file, const std::string& of) {
   CoefficientSet set = read_coefficient_set(file, of);
@@ -71,8 +67,8 @@ SurfaceSource source_of_set(const std::string& file, const std::string& of, bool
   source.name = of.empty() ? "surface" : of;
   source.expansion.coefficients = orthonormal(set);
   source.expansion.origin = set.origin.value_or(Vec3::Zero());
-  source.expansion.mean_dtheta = removed_mean(set, "f_dtheta");
-  source.expansion.mean_dphi = removed_mean(set, "f_dphi");
+  source.expansion.mean_dtheta = remark_number(set, file, "removed_mean_f_dtheta", 0);
+  source.expansion.mean_dphi = remark_number(set, file, "removed_mean_f_dphi", 0);
   source.mesh = set.provenance.mesh;
   source.notes = set.notes;
   if (!(spherical_radius(source.expansion) > 0))

@@ -2,6 +2,7 @@
 
 #include "host/io/netcdf.hpp"
 #include "host/io/number.hpp"
+#include "host/io/shown.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
@@ -120,7 +121,7 @@ void write_distances_csv(const DistanceTable& table, const std::function<void(st
       fmt::format("# cowgpu {}\n# mesh {}\n# sha256 {}\n# signed {}\n"
                   "x,y,z,distance,closest_x,closest_y,closest_z,face,b0,b1,b2,"
                   "feature,feature_first,feature_second{}\n",
-                  version, table.mesh, table.sha256, with_sign ? "yes" : "no", with_sign ? ",winding" : "");
+                  version, one_line(table.mesh), table.sha256, with_sign ? "yes" : "no", with_sign ? ",winding" : "");
   const auto append_vector = [&text](const Vec3& v) {
     for (int c = 0; c < 3; ++c) {
       append_number(text, v[c]);

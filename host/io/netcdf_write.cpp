@@ -1,5 +1,6 @@
 #include "host/error.hpp"
 #include "host/io/netcdf.hpp"
+#include "host/io/shown.hpp"
 
 #include <fmt/format.h>
 #include <netcdf.h>
@@ -51,8 +52,9 @@ int NetcdfWriter::variable(const std::string& name, Type type, std::span<const i
 }
 
 // An empty text is one NUL, as xarray writes it.
-void NetcdfWriter::attribute(int variable, const std::string& name, std::string_view text) {
-  if (text.empty()) text = std::string_view("\0", 1);
+void NetcdfWriter::attribute(int variable, const std::string& name, std::string_view given) {
+  const std::string safe = one_line(given);
+  const std::string_view text = safe.empty() ? std::string_view("\0", 1) : std::string_view(safe);
   check(nc_put_att_text(id_, place(variable), name.c_str(), text.size(), text.data()));
 }
 

@@ -200,11 +200,7 @@ RawMesh parse_off(std::string_view bytes, const std::string& name) {
 
 void write_off(const TriangleSurface& surface, std::span<const std::string> comments, AtomicFile& file) {
   check(surface);
-  const auto comment = [&](std::string text) {
-    for (char& c : text)
-      if (static_cast<unsigned char>(c) < ' ') c = ' ';
-    file.write(fmt::format("# {}\n", text));
-  };
+  const auto comment = [&](const std::string& text) { file.write(fmt::format("# {}\n", one_line(text))); };
   file.write("OFF\n");
   comment(fmt::format("cowgpu {}, surface {}", version, surface.name));
   for (const std::string& text : comments) comment(text);

@@ -2,6 +2,7 @@
 
 #include "host/io/netcdf.hpp"
 #include "host/io/number.hpp"
+#include "host/io/shown.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ std::vector<Column> columns_of(const PotentialTable& table) {
 void write_csv(const PotentialTable& table, AtomicFile& file, const Monitor& monitor) {
   const std::vector<Column> columns = columns_of(table);
   std::string text = fmt::format("# cowgpu {}\n# input {}\n# length {}\n# potential {}\n# {} {}\n# gradient {}\n",
-                                 version, table.input, table.length_unit, table.potential_unit,
+                                 version, one_line(table.input), table.length_unit, table.potential_unit,
                                  table.charge ? "field" : "acceleration", table.force_unit, table.tensor_unit);
   for (std::size_t c = 0; c < columns.size(); ++c) text += (c ? "," : "") + columns[c].name;
   text += '\n';

@@ -1,6 +1,7 @@
 #include "host/io/streamline_file.hpp"
 
 #include "host/io/number.hpp"
+#include "host/io/shown.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
@@ -40,7 +41,7 @@ void write_streamlines_csv(const StreamlineTable& table, const std::function<voi
       fmt::format("# cowgpu {}\n# mesh {}\n# sha256 {}\n# normal {}\n# offset {}\n# axis_u {}\n# axis_v {}\n"
                   "# origin {}\n# time {}\n"
                   "line,time,x,y,z,u,v,height,distance,direction_u,direction_v,flags\n",
-                  version, table.mesh, table.sha256, vector_text(table.plane.normal), table.plane.offset,
+                  version, one_line(table.mesh), table.sha256, vector_text(table.plane.normal), table.plane.offset,
                   vector_text(u), vector_text(v), vector_text(table.origin), table.time);
   for (std::size_t i = 0; i < lines.positions.size(); ++i)
     for (std::size_t k = lines.first[i]; k < lines.first[i + 1]; ++k) {

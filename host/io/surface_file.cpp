@@ -48,7 +48,7 @@ std::string chosen(const std::string& name, const json& expansions, const std::s
 std::string text(const std::string& name, const json& object, const char* key) {
   const json& value = member(name, object, key);
   if (!value.is_string()) throw Error(Fault::file_format, fmt::format("{}: the member '{}' is no text", name, key));
-  return value.get<std::string>();
+  return one_line(value.get<std::string>());
 }
 
 Vec3 point(const std::string& name, const json& object, const char* key) {

@@ -100,6 +100,14 @@ std::optional<double> to_number(std::string_view word) {
   return value;
 }
 
+std::optional<double> finite_number(std::string_view word) {
+  word = without_plus(word);
+  double value = 0;
+  const auto result = read(word, value);
+  if (result.ec != std::errc() || result.ptr != word.data() + word.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
 std::optional<std::int64_t> to_integer(std::string_view word) {
   word = without_plus(word);
   std::int64_t value = 0;

@@ -53,6 +53,10 @@ private:
 /// numbers. Empty if the word is no number.
 std::optional<double> to_number(std::string_view word);
 
+/// The word as a finite number in decimal, all of it ("1e3", "-.5", "+2"); empty for everything else: "nan", "inf", "0x10",
+/// "1,5", numbers beyond double's range. The one parse of numbers that stand in remarks, comments and tables.
+std::optional<double> finite_number(std::string_view word);
+
 /// The word as an integer, held at the ends of the range if beyond it. Empty if the word is no integer.
 std::optional<std::int64_t> to_integer(std::string_view word);
 

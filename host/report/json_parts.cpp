@@ -1,5 +1,6 @@
 #include "host/report/json_parts.hpp"
 
+#include "host/io/shown.hpp"
 #include "host/version.hpp"
 
 #include <fmt/chrono.h>
@@ -26,7 +27,7 @@ ordered_json program_json() {
 }
 
 std::string json_text(const ordered_json& document) {
-  return document.dump(1, ' ', false, ordered_json::error_handler_t::replace);
+  return terminal_json(document.dump(1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 std::string json_members(const ordered_json& object) {
