@@ -22,7 +22,17 @@ SphereDirections::SphereDirections(const SphereGrid& grid)
   const long long n = grid.ring_length;
   cosine_phi.reserve(std::size_t(n));
   sine_phi.reserve(std::size_t(n));
-  for (long long j = 0; j < n; ++j) {
+  for (long long j = 0; j < n && grid.shift != 0; ++j) {
+    if (grid.shift == 0.5) {
+      cosine_phi.push_back(cosine_of_turn(2 * j + 1, 2 * n));
+      sine_phi.push_back(cosine_of_turn((8 * j + 4 + 6 * n) % (8 * n), 8 * n));
+    } else {
+      const long double phi = 2 * std::numbers::pi_v<long double> * (j + (long double)grid.shift) / n;
+      cosine_phi.push_back(double(std::cos(phi)));
+      sine_phi.push_back(double(std::sin(phi)));
+    }
+  }
+  for (long long j = 0; j < n && grid.shift == 0; ++j) {
     cosine_phi.push_back(cosine_of_turn(j, n));
     // sin x = cos(x - 90 degrees)
     sine_phi.push_back(cosine_of_turn((4 * j + 3 * n) % (4 * n), 4 * n));

@@ -9,7 +9,7 @@
 namespace cowgpu {
 
 /// Point (i, j) of a grid has the direction (s_i c_j, s_i t_j, z_i): s_i and z_i are sin theta_i and cos theta_i, c_j and
-/// t_j cos and sin of phi_j = 2 pi j / ring_length, each rounded to double; the products are rounded to double. It is
+/// t_j cos and sin of phi_j = 2 pi (j + shift) / ring_length, each rounded to double; the products are rounded to double. It is
 /// (0, 0, 1) or (0, 0, -1) for every point of a ring at a pole, has exact zeros wherever phi_j is a multiple of 90
 /// degrees or theta_i is 90 degrees, and exact symmetry between the octants.
 struct SphereDirections {

@@ -166,6 +166,24 @@ void driscoll_healy(SphereGrid& grid) {
   });
 }
 
+// Weights of theta_i = pi (i + 1/2) / n, i = 0 ... n-1: 2/n (1 - 2 sum_k cos(2 k theta_i) / (4 k^2 - 1)), k = 1 ... n/2; they
+// integrate polynomials in cos theta of degree n - 1, and are symmetric.
+void fejer(SphereGrid& grid) {
+  const int n = grid.rings;
+  const std::vector<Real> c = cosines(2 * n); // of pi i / 2n
+  for (int i = 0; i < n; ++i) set_ring(grid, i, c[std::size_t(2 * i + 1)], sine_of(2 * i + 1, 2 * n));
+  const auto period = std::size_t(4) * std::size_t(n);
+  parallel_for(0, std::size_t((n + 1) / 2), [&](std::size_t i, unsigned) {
+    Real sum = 0;
+    for (int k = n / 2; k >= 1; --k) {
+      std::size_t at = std::size_t(2) * std::size_t(k) * (2 * i + 1) % period; // 2 k theta_i in steps of pi / 2n, folded
+      if (at > period / 2) at = period - at;
+      sum += 2 * c[at] / (4 * Real(k) * Real(k) - 1);
+    }
+    grid.weights[i] = grid.weights[std::size_t(n) - 1 - i] = double(2 * (1 - sum) / n);
+  });
+}
+
 SphereGrid filled(GridKind kind, int lmax, int rings, int ring_length) {
   SphereGrid grid;
   grid.kind = kind;
@@ -182,6 +200,10 @@ SphereGrid filled(GridKind kind, int lmax, int rings, int ring_length) {
   case GridKind::clenshaw_curtis: clenshaw_curtis(grid); break;
   case GridKind::driscoll_healy:
   case GridKind::driscoll_healy_square: driscoll_healy(grid); break;
+  case GridKind::fejer:
+    fejer(grid);
+    grid.shift = 0.5;
+    break;
   }
   return grid;
 }
@@ -194,19 +216,20 @@ std::string_view name(GridKind kind) {
   case GridKind::clenshaw_curtis: return "cc";
   case GridKind::driscoll_healy: return "dh";
   case GridKind::driscoll_healy_square: return "dh1";
+  case GridKind::fejer: return "f1";
   }
   return "unknown";
 }
 
 double SphereGrid::phi(int j) const {
-  return double(2 * pi * j / ring_length);
+  return double(2 * pi * (j + Real(shift)) / ring_length);
 }
 double SphereGrid::latitude_degrees(int i) const {
   const auto at = std::size_t(i);
   return double(std::atan2(cosine[at], sine[at]) * 180 / pi);
 }
 double SphereGrid::longitude_degrees(int j) const {
-  return double(360.0L * j / ring_length);
+  return double(360.0L * (j + Real(shift)) / ring_length);
 }
 
 SphereGrid make_grid(GridKind kind, int lmax) {
@@ -219,6 +242,7 @@ SphereGrid make_grid(GridKind kind, int lmax) {
   case GridKind::clenshaw_curtis: return filled(kind, lmax, std::max(2, 2 * lmax + 1), longitudes);
   case GridKind::driscoll_healy: return filled(kind, lmax, 2 * lmax + 2, 4 * lmax + 4);
   case GridKind::driscoll_healy_square: return filled(kind, lmax, 2 * lmax + 2, 2 * lmax + 2);
+  case GridKind::fejer: return filled(kind, lmax, 2 * lmax + 2, 4 * lmax + 4);
   }
   throw Error(Fault::bad_argument, "a grid of no known kind");
 }
@@ -239,6 +263,7 @@ SphereGrid make_grid(GridKind kind, int rings, int ring_length) {
     if (rings < 2) refuse("it has both poles");
     lmax = std::min((rings - 1) / 2, by_ring);
     break;
+  case GridKind::fejer: lmax = std::min((rings - 1) / 2, by_ring); break;
   case GridKind::driscoll_healy:
   case GridKind::driscoll_healy_square: {
     const int per_ring = kind == GridKind::driscoll_healy ? 2 * rings : rings;

@@ -5,9 +5,34 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 namespace cowgpu {
+
+namespace {
+
+// Coefficients times exp(i m delta), delta = sign 2 pi shift / ring_length: what a grid whose rings begin beside longitude 0 has
+// instead of them.
+void turn(const SphereGrid& grid, int lmax, int fields, int sign, std::span<std::complex<double>> coefficients) {
+  const std::size_t count = SphereCoefficients::count(lmax);
+  for (int m = 1; m <= lmax; ++m) {
+    const long double steps = std::fmod(static_cast<long double>(m) * static_cast<long double>(grid.shift), grid.ring_length);
+    const long double angle = 2 * std::numbers::pi_v<long double> * steps / grid.ring_length;
+    const std::complex<double> factor(double(std::cos(angle)), sign * double(std::sin(angle)));
+    for (std::size_t f = 0; f < std::size_t(fields); ++f) {
+      std::complex<double>* const at = coefficients.data() + f * count + SphereCoefficients::index(lmax, m, m);
+      for (int i = 0; i <= lmax - m; ++i) {
+        const double re = at[i].real(), im = at[i].imag();
+        at[i] = {re * factor.real() - im * factor.imag(), re * factor.imag() + im * factor.real()};
+      }
+    }
+  }
+}
+
+} // namespace
 
 SphereTransform::SphereTransform(SphereGrid grid, int lmax) : grid_(std::move(grid)), lmax_(lmax) {
   if (lmax < 0 || lmax > grid_.lmax)
@@ -41,29 +66,44 @@ void SphereTransform::timed(int fields, std::size_t coefficients, std::size_t va
   if (report) *report = std::move(own);
 }
 
+void SphereTransform::to_rings(int fields, std::span<const std::complex<double>> coefficients, std::span<double> values,
+                               RingFactor factor, Monitor& monitor, TransformReport& report) {
+  if (grid_.shift == 0) return to_grid(fields, coefficients, values, factor, monitor, report);
+  std::vector<std::complex<double>> turned(coefficients.begin(), coefficients.end());
+  turn(grid_, lmax_, fields, 1, turned);
+  to_grid(fields, turned, values, factor, monitor, report);
+}
+
+void SphereTransform::from_rings(int fields, std::span<const double> values,
+                                 std::span<std::complex<double>> coefficients, RingFactor factor, Monitor& monitor,
+                                 TransformReport& report) {
+  from_grid(fields, values, coefficients, factor, monitor, report);
+  if (grid_.shift != 0) turn(grid_, lmax_, fields, -1, coefficients);
+}
+
 void SphereTransform::synthesise(int fields, std::span<const std::complex<double>> coefficients,
                                  std::span<double> values, Monitor& monitor, TransformReport* report) {
   timed(fields, coefficients.size(), values.size(), report,
-        [&](TransformReport& own) { to_grid(fields, coefficients, values, RingFactor::one, monitor, own); });
+        [&](TransformReport& own) { to_rings(fields, coefficients, values, RingFactor::one, monitor, own); });
 }
 
 void SphereTransform::analyse(int fields, std::span<const double> values, std::span<std::complex<double>> coefficients,
                               Monitor& monitor, TransformReport* report) {
   timed(fields, coefficients.size(), values.size(), report,
-        [&](TransformReport& own) { from_grid(fields, values, coefficients, RingFactor::weight, monitor, own); });
+        [&](TransformReport& own) { from_rings(fields, values, coefficients, RingFactor::weight, monitor, own); });
 }
 
 void SphereTransform::synthesise_adjoint(int fields, std::span<const double> values,
                                          std::span<std::complex<double>> coefficients, Monitor& monitor,
                                          TransformReport* report) {
   timed(fields, coefficients.size(), values.size(), report,
-        [&](TransformReport& own) { from_grid(fields, values, coefficients, RingFactor::one, monitor, own); });
+        [&](TransformReport& own) { from_rings(fields, values, coefficients, RingFactor::one, monitor, own); });
 }
 
 void SphereTransform::analyse_adjoint(int fields, std::span<const std::complex<double>> coefficients,
                                       std::span<double> values, Monitor& monitor, TransformReport* report) {
   timed(fields, coefficients.size(), values.size(), report,
-        [&](TransformReport& own) { to_grid(fields, coefficients, values, RingFactor::weight, monitor, own); });
+        [&](TransformReport& own) { to_rings(fields, coefficients, values, RingFactor::weight, monitor, own); });
 }
 
 } // namespace cowgpu

@@ -67,6 +67,7 @@ protected:
   /// What rings are multiplied by: 1, or weight_i 2 pi / ring_length.
   enum class RingFactor { one, weight };
 
+  /// What a path does: the grid's rings as if they began at longitude 0; SphereGrid::shift is seen to here, by exp(i m phi).
   virtual void to_grid(int fields, std::span<const std::complex<double>> coefficients, std::span<double> values,
                        RingFactor factor, Monitor& monitor, TransformReport& report) = 0;
   virtual void from_grid(int fields, std::span<const double> values, std::span<std::complex<double>> coefficients,
@@ -74,6 +75,10 @@ protected:
 
 private:
   void check(int fields, std::size_t coefficients, std::size_t values) const;
+  void to_rings(int fields, std::span<const std::complex<double>> coefficients, std::span<double> values,
+                RingFactor factor, Monitor& monitor, TransformReport& report);
+  void from_rings(int fields, std::span<const double> values, std::span<std::complex<double>> coefficients,
+                  RingFactor factor, Monitor& monitor, TransformReport& report);
   template <class Work>
   void timed(int fields, std::size_t coefficients, std::size_t values, TransformReport* report, const Work& work);
   SphereGrid grid_;

@@ -21,7 +21,8 @@ constexpr int high_degree = 512; // of the one test that only looks at a few poi
 
 Direction point(const SphereGrid& grid, std::size_t i) {
   const auto ring = i / std::size_t(grid.ring_length);
-  const long double phi = 2 * std::numbers::pi_v<long double> * (i % std::size_t(grid.ring_length)) / grid.ring_length;
+  const long double step = 2 * std::numbers::pi_v<long double> / grid.ring_length;
+  const long double phi = step * (static_cast<long double>(i % std::size_t(grid.ring_length)) + grid.shift);
   return {grid.cosine[ring], grid.sine[ring], double(phi), double(phi - double(phi))};
 }
 
@@ -57,7 +58,7 @@ TEST_CASE("derivatives on a grid are the 80-bit sums at every point", "[derivati
   paths.each([](Backend& backend) {
     for (const int lmax : degrees)
       for (const GridKind kind : {GridKind::gauss_legendre, GridKind::clenshaw_curtis, GridKind::driscoll_healy,
-                                  GridKind::driscoll_healy_square})
+                                  GridKind::driscoll_healy_square, GridKind::fejer})
         check_derivatives(backend, kind, lmax, lmax, lmax < 20 ? 2 : 1, lmax < 20 ? 1 : 13, 2e-14);
     check_derivatives(backend, GridKind::driscoll_healy, 100, 100, 1, 97, 1e-13);
     check_derivatives(backend, GridKind::gauss_legendre, 9, 4, 1, 1, 2e-14);

@@ -49,7 +49,6 @@ struct Foreign {
   std::string variable_grid, global_grid; // attributes, left out where empty
   std::string lat_units = "degrees_north";
   double fill = std::numeric_limits<double>::quiet_NaN();
-  bool packed = false, transposed = false;
 
   void write(const std::string& path) const {
     int nc = 0, dim[2] = {0, 0}, lat = 0, lon = 0, data = 0;
@@ -59,10 +58,8 @@ struct Foreign {
     ok(nc_def_var(nc, lat_name, NC_DOUBLE, 1, &dim[0], &lat));
     ok(nc_def_var(nc, lon_name, NC_DOUBLE, 1, &dim[1], &lon));
     ok(nc_put_att_text(nc, lat, "units", lat_units.size(), lat_units.c_str()));
-    const int turned[2] = {dim[1], dim[0]};
-    ok(nc_def_var(nc, "data", type, 2, transposed ? turned : dim, &data));
+    ok(nc_def_var(nc, "data", type, 2, dim, &data));
     if (!std::isnan(fill)) ok(nc_put_att_double(nc, data, "missing_value", NC_DOUBLE, 1, &fill));
-    if (packed) ok(nc_put_att_double(nc, data, "scale_factor", NC_DOUBLE, 1, lats.data()));
     if (!variable_grid.empty()) ok(nc_put_att_text(nc, data, "grid", variable_grid.size(), variable_grid.c_str()));
     if (!global_grid.empty()) ok(nc_put_att_text(nc, NC_GLOBAL, "grid", global_grid.size(), global_grid.c_str()));
     ok(nc_enddef(nc));
@@ -96,7 +93,8 @@ Foreign pyshtools(const GridFile& grid, bool extend) {
 TEST_CASE("grids of every kind read back the same from netCDF and CSV", "[grid-file]") {
   const TemporaryFolder folder;
   for (const GridKind kind :
-       {GridKind::gauss_legendre, GridKind::clenshaw_curtis, GridKind::driscoll_healy, GridKind::driscoll_healy_square})
+       {GridKind::gauss_legendre, GridKind::clenshaw_curtis, GridKind::driscoll_healy, GridKind::driscoll_healy_square,
+        GridKind::fejer})
     for (const int lmax : {0, 1, 2, 7, 12})
       for (const int fields : {1, 3})
         for (const char* suffix : {"g.nc", "g.csv"}) {
@@ -107,6 +105,7 @@ TEST_CASE("grids of every kind read back the same from netCDF and CSV", "[grid-f
           CHECK(back.grid.kind == kind);
           CHECK(back.grid.rings == grid.grid.rings);
           CHECK(back.grid.ring_length == grid.grid.ring_length);
+          CHECK(back.grid.shift == grid.grid.shift);
           CHECK(back.lmax == lmax);
           CHECK(back.convention == grid.convention);
           CHECK(back.names == grid.names);
@@ -255,17 +254,18 @@ TEST_CASE("netCDF files that hold no grid we can use are named errors", "[grid-f
   refused("file-syntax", "missing value", [](Foreign& f) { f.values[20] = std::nan(""); });
   refused("file-syntax", "row 0, column 3", [](Foreign& f) { f.values[3] = HUGE_VAL; });
   refused("file-syntax", "missing value", [](Foreign& f) { f.fill = f.values[7]; });
-  refused("file-syntax", "360 E", [&](Foreign& f) { f.values[2 * length - 1] += 1e19; });
+  refused("file-syntax", "at 360 degrees and", [&](Foreign& f) { f.values[2 * length - 1] += 1e19; });
   refused("file-syntax", "variable lat, value 2", [](Foreign& f) { f.lats[2] += 1e-5; });
   refused("file-syntax", "variable lon, value 3", [](Foreign& f) { f.lons[3] -= 1e-5; });
   refused("file-syntax", "variable lat", [](Foreign& f) { f.lats[1] = std::nan(""); });
   refused("file-syntax", "radians", [](Foreign& f) { f.lat_units = "radians"; });
-  refused("file-format", "lat(lat)", [](Foreign& f) { f.lat_name = "y"; });
-  refused("file-format", "packed", [](Foreign& f) { f.packed = true; });
-  refused("file-format", "(lat, lon)", [](Foreign& f) { f.transposed = true; });
+  refused("file-format", "lat(lat)", [](Foreign& f) {
+    f.lat_name = "ring";
+    f.lat_units = "degrees";
+  });
   refused("file-format", "grid", [](Foreign& f) { f.variable_grid = "HEALPIX"; });
   refused("file-syntax", "lmax", [](Foreign& f) { f.global_grid = "dh"; });
-  refused("file-syntax", "there are gl, cc, dh and dh1", [](Foreign& f) { f.global_grid = "milk"; });
+  refused("file-syntax", "there are gl, cc, dh, dh1 and f1", [](Foreign& f) { f.global_grid = "milk"; });
   refused("file-format", "rings", [&](Foreign& f) { // a dh grid has an even number
     f.lats.pop_back();
     f.lats.pop_back();

@@ -18,7 +18,7 @@ using namespace cowgpu::test;
 namespace {
 
 const std::vector<GridKind> kinds = {GridKind::gauss_legendre, GridKind::clenshaw_curtis, GridKind::driscoll_healy,
-                                     GridKind::driscoll_healy_square};
+                                     GridKind::driscoll_healy_square, GridKind::fejer};
 
 void compare_everywhere(const MappedMesh& map, double figure) {
   Paths paths;

@@ -17,7 +17,7 @@ using Wide = boost::multiprecision::float128;
 namespace {
 
 const std::vector<GridKind> kinds = {GridKind::gauss_legendre, GridKind::clenshaw_curtis, GridKind::driscoll_healy,
-                                     GridKind::driscoll_healy_square};
+                                     GridKind::driscoll_healy_square, GridKind::fejer};
 
 double ulp(double x) {
   return std::nextafter(std::fabs(x), std::numeric_limits<double>::infinity()) - std::fabs(x);
@@ -122,11 +122,34 @@ TEST_CASE("rings of the equiangular grids lie where their names say", "[grid]") 
   CHECK(dh1.weights == dh.weights);
 }
 
+TEST_CASE("points of the f1 grid are the centres of cells, with Fejer's weights", "[grid]") {
+  const SphereGrid f1 = make_grid(GridKind::fejer, 89);
+  CHECK(f1.rings == 180);
+  CHECK(f1.ring_length == 360);
+  CHECK(f1.latitude_degrees(0) == 89.5);
+  CHECK(f1.latitude_degrees(179) == -89.5);
+  CHECK(f1.longitude_degrees(0) == 0.5);
+  CHECK(f1.longitude_degrees(359) == 359.5);
+  const SphereGrid two = make_grid(GridKind::fejer, 2, 4), three = make_grid(GridKind::fejer, 3, 6);
+  CHECK(two.weights == std::vector<double>{1, 1});
+  // n = 3: the interpolant through theta = 30, 90, 150 degrees integrates to (4 f_0 + 10 f_1 + 4 f_2) / 9.
+  CHECK(three.weights[0] == Approx(4.0 / 9).epsilon(1e-15));
+  CHECK(three.weights[1] == Approx(10.0 / 9).epsilon(1e-15));
+  CHECK(three.weights[2] == three.weights[0]);
+  for (const int n : {1, 4, 5, 50, 51}) // odd numbers of rings too: exact to degree n - 1
+    for (const long double s : [&] {
+           auto sums = ring_integrals(make_grid(GridKind::fejer, n, 2 * n), n - 1);
+           sums[0] -= 2;
+           return sums;
+         }())
+      CHECK(std::fabs(double(s)) < 5e-16);
+}
+
 TEST_CASE("rings are mirror images across the equator, bit for bit", "[grid]") {
   for (const GridKind kind : kinds)
     for (const int lmax : {1, 2, 9, 64, 301}) {
       const SphereGrid grid = make_grid(kind, lmax);
-      const bool pole_alone = kind != GridKind::gauss_legendre && kind != GridKind::clenshaw_curtis;
+      const bool pole_alone = kind == GridKind::driscoll_healy || kind == GridKind::driscoll_healy_square;
       for (int i = pole_alone ? 1 : 0; i < grid.rings; ++i) {
         const auto at = std::size_t(i), mirror = std::size_t(pole_alone ? grid.rings - i : grid.rings - 1 - i);
         REQUIRE(grid.cosine[at] == -grid.cosine[mirror]);
@@ -147,6 +170,8 @@ TEST_CASE("a grid is known again by its shape", "[grid]") {
     }
   CHECK(make_grid(GridKind::gauss_legendre, 10, 7).lmax == 3);      // rings too short for degree 9
   CHECK(make_grid(GridKind::clenshaw_curtis, 181, 360).lmax == 90); // a map of one degree
+  CHECK(make_grid(GridKind::fejer, 180, 360).lmax == 89);           // its cells
+  CHECK(make_grid(GridKind::fejer, 7, 8).lmax == 3);
 }
 
 TEST_CASE("shapes that no grid has are refused", "[grid]") {

@@ -15,7 +15,7 @@ using namespace cowgpu::test;
 namespace {
 
 const std::vector<GridKind> kinds = {GridKind::gauss_legendre, GridKind::clenshaw_curtis, GridKind::driscoll_healy,
-                                     GridKind::driscoll_healy_square};
+                                     GridKind::driscoll_healy_square, GridKind::fejer};
 
 // sum over m = -l ... l of conj(a) b.
 double inner(const SphereCoefficients& a, const SphereCoefficients& b) {

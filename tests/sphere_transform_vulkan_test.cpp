@@ -104,7 +104,7 @@ TEST_CASE("every layout of a transform gives the same result", "[transform][vulk
       with([](GpuOptions& o) { o.transform_binding = 1 << 16, o.transform_pairs = 8, o.private_ring_points = 0; }),
       with([](GpuOptions& o) { o.private_ring_points = 0; }),
   };
-  for (const GridKind kind : {GridKind::gauss_legendre, GridKind::driscoll_healy})
+  for (const GridKind kind : {GridKind::gauss_legendre, GridKind::driscoll_healy, GridKind::fejer})
     for (const int fields : {1, 5}) {
       const SphereGrid grid = make_grid(kind, 100);
       const Both expected = both(*plain, grid, 97, fields);

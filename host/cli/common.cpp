@@ -77,7 +77,7 @@ std::unique_ptr<Backend> open_backend(const Common& common, std::string* note) {
 }
 
 void add_grid_option(CLI::App& command, std::string& grid, const char* what) {
-  command.add_option("--grid", grid, what)->check(CLI::IsMember({"gl", "cc", "dh", "dh1"}))->type_name("KIND");
+  command.add_option("--grid", grid, what)->check(CLI::IsMember({"gl", "cc", "dh", "dh1", "f1"}))->type_name("KIND");
 }
 
 void add_degree_option(CLI::App& command, int& lmax, const char* what) {

@@ -189,7 +189,7 @@ void add_roundtrip(CLI::App& transform, Common& common) {
       ->capture_default_str();
   add_grid_option(*command, options->grid,
                   "gl (Gauss-Legendre), cc (Clenshaw-Curtis), dh (Driscoll-Healy, n x 2n), dh1 "
-                  "(n x n)");
+                  "(n x n), f1 (Fejer, cell-centred: n x 2n)");
   command->get_option("--grid")->capture_default_str();
   command->add_option("--seed", options->seed, "Of the coefficients: std::mt19937_64, uniform in [-0.5, 0.5]")
       ->check(non_negative_number())

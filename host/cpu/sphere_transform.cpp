@@ -211,7 +211,8 @@ MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields,
   const std::size_t a_thread = LegendreWork::bytes(shape) + RingWork::most_bytes(grid.ring_length);
   const std::size_t between = SpectrumLayout(shape, std::min(fields, most_fields_together)).size() * sizeof(double);
   constexpr std::size_t others = std::size_t(2) << 20; // a large page, small objects, alignment
-  return {of_grid + of_plan + of_seeds + of_planning + of_fourier + threads * a_thread + between + others, 0};
+  const std::size_t turned = grid.shift == 0 ? 0 : 16 * std::size_t(fields) * SphereCoefficients::count(lmax);
+  return {of_grid + of_plan + of_seeds + of_planning + of_fourier + threads * a_thread + between + turned + others, 0};
 }
 
 } // namespace cowgpu::cpu

@@ -186,7 +186,8 @@ MemoryNeed sphere_transform_memory(const engine::GpuFacts& facts, const engine::
   const std::uint64_t orders = std::uint64_t(lmax) + 1;
   const std::uint64_t steps = orders * (orders / 4 + plan::step_multiple + 1); // of all orders, with padding
   MemoryNeed need;
-  need.host = 48 * steps + 48 * orders + 64 * pairs + orders * pairs * 17 + (std::uint64_t(1) << 20);
+  if (grid.shift != 0) need.host += 16 * std::uint64_t(fields) * SphereCoefficients::count(lmax);
+  need.host += 48 * steps + 48 * orders + 64 * pairs + orders * pairs * 17 + (std::uint64_t(1) << 20);
   need.device = engine::sphere_transform_device_bytes(shape, facts, lmax, int(pairs), grid.ring_length, fields);
   return need;
 }

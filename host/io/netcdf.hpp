@@ -30,7 +30,8 @@ struct NetcdfVariable {
   std::string name;
   std::vector<std::size_t> dimensions; ///< places in NetcdfFile::dimensions
   std::vector<NetcdfAttribute> attributes;
-  bool read = false;          ///< a variable of numbers with one or two dimensions; others are listed without values
+  bool read = false;   ///< a variable of numbers, at most two of its dimensions longer than 1; others have no values
+  bool single = false; ///< its numbers are floats
   std::vector<double> values; ///< numbers of any type as double, packing (scale_factor) not undone
 };
 
@@ -44,8 +45,8 @@ struct NetcdfFile {
   const NetcdfVariable* variable(std::string_view variable_name) const; ///< null where there is none
 };
 
-/// Value `at` of a variable, NaN where it stands for none: what _FillValue or missing_value says, netCDF's own fill value of
-/// floating-point variables without _FillValue, or outside valid_min, valid_max and the lower end of valid_range.
+/// Value `at` of a variable, unpacked (times scale_factor, plus add_offset), NaN where it stands for none: what _FillValue or missing_value says, netCDF's own fill value of
+/// floating-point variables without _FillValue, or outside valid_min, valid_max and the lower end of valid_range; these are about the packed number.
 double present_value(const NetcdfVariable& variable, std::size_t at);
 
 /// The attribute of that name, or null.
@@ -61,6 +62,9 @@ void sort_fields(std::vector<const NetcdfVariable*>& variables);
 ///
 /// Memory: the file and its values. Throws Error(cannot_read), file_format (no netCDF, damaged beyond use), too_large.
 NetcdfFile read_netcdf(const std::filesystem::path& path);
+
+/// The same of a file's bytes; `name` opens every message.
+NetcdfFile parse_netcdf(std::string bytes, const std::string& name);
 
 /// Builds a netCDF-4 file in memory. Definitions first, then values, then write_to().
 class NetcdfWriter {

@@ -109,36 +109,44 @@ void send_variable(Sender& out, int file, int variable, std::size_t file_size) {
   out.text(name.data());
   out.number(std::uint64_t(rank));
   std::uint64_t total = 1;
+  std::vector<std::size_t> lengths;
   for (int d = 0; d < rank; ++d) {
     std::size_t length = 0;
     check(nc_inq_dimlen(file, dimensions[std::size_t(d)], &length), "a dimension");
+    lengths.push_back(length);
     out.number(std::uint64_t(dimensions[std::size_t(d)]));
     total = length && total > largest_total(file_size) / length ? largest_total(file_size) + 1 : total * length;
   }
   out.number(std::uint64_t(attributes));
   for (int i = 0; i < attributes; ++i) send_attribute(out, file, variable, i);
   const bool numbers = type != NC_CHAR && type > NC_NAT && type < NC_STRING;
-  const bool wanted = numbers && (rank == 1 || rank == 2);
+  int longer = 0, first_long = -1; // of its dimensions
+  for (int d = 0; d < rank; ++d) {
+    if (lengths[std::size_t(d)] <= 1) continue;
+    if (first_long < 0) first_long = d;
+    ++longer;
+  }
+  const bool wanted = numbers && rank >= 1 && longer <= 2;
   if (wanted && total > largest_total(file_size))
     throw Damage{fmt::format("variable {} is larger than the file can hold", shown(name.data()))};
   out.number(wanted);
   if (!wanted) return;
+  out.number(type == NC_FLOAT);
   out.number(total);
   if (total == 0) return;
-  // Row by row for two dimensions: no second copy of the field.
-  const std::size_t rows = rank == 2 ? [&] {
-    std::size_t length = 0;
-    check(nc_inq_dimlen(file, dimensions[0], &length), "a dimension");
-    return length;
-  }()
-                                     : 1;
+  // By slices of the first of two longer dimensions: no second copy of the field.
+  const std::size_t rows = longer == 2 ? lengths[std::size_t(first_long)] : 1;
   const auto row_length = std::size_t(total / rows);
   const std::size_t step = std::max<std::size_t>(1, (std::size_t(1) << 20) / row_length);
   std::vector<double> values(std::min(rows, step) * row_length);
+  std::vector<std::size_t> start(lengths.size(), 0), count = lengths;
   for (std::size_t i = 0; i < rows; i += step) {
     const std::size_t n = std::min(step, rows - i);
-    const std::size_t start[] = {rank == 2 ? i : 0, 0}, count[] = {rank == 2 ? n : row_length, row_length};
-    check(nc_get_vara_double(file, variable, start, count, values.data()), name.data());
+    if (longer == 2) {
+      start[std::size_t(first_long)] = i;
+      count[std::size_t(first_long)] = n;
+    }
+    check(nc_get_vara_double(file, variable, start.data(), count.data(), values.data()), name.data());
     out.bytes(values.data(), n * row_length * sizeof(double));
   }
 }
@@ -271,6 +279,7 @@ public:
       v.attributes = attributes();
       v.read = number(1) == 1;
       if (!v.read) continue;
+      v.single = number(1) == 1;
       v.values.resize(number(largest_total(file_size)));
       if (v.values.size() != total) throw Damage{"sizes that do not fit each other"};
       bytes(v.values.data(), v.values.size() * sizeof(double));
@@ -304,7 +313,9 @@ double present_value(const NetcdfVariable& variable, std::size_t at) {
   for (const char* key : {"valid_min", "valid_range"})
     if (const NetcdfAttribute* low = number(key)) missing = missing || value < low->number;
   if (const NetcdfAttribute* high = number("valid_max")) missing = missing || value > high->number;
-  return missing ? std::nan("") : value;
+  if (missing) return std::nan("");
+  const NetcdfAttribute *scale = number("scale_factor"), *offset = number("add_offset");
+  return (scale ? value * scale->number : value) + (offset ? offset->number : 0);
 }
 
 const NetcdfVariable* NetcdfFile::variable(std::string_view variable_name) const {
@@ -323,16 +334,19 @@ void sort_fields(std::vector<const NetcdfVariable*>& variables) {
 }
 
 NetcdfFile read_netcdf(const std::filesystem::path& path) {
-  std::string bytes = read_input_file(path);
+  return parse_netcdf(read_input_file(path), path.string());
+}
+
+NetcdfFile parse_netcdf(std::string bytes, const std::string& name) {
   if (!bytes.starts_with("\x89HDF\r\n\x1a\n") && !bytes.starts_with("CDF\x01") && !bytes.starts_with("CDF\x02") &&
       !bytes.starts_with("CDF\x05"))
     throw Error(Fault::file_format,
                 fmt::format("{}: this is no netCDF file: it begins with neither HDF nor CDF; a name "
                             "that ends in .csv is read as text",
-                            path.string()));
+                            name));
   Ends results, reasons;
   const pid_t reader = fork();
-  if (reader < 0) throw Error(Fault::cannot_read, fmt::format("{}: no process can be had to read it", path.string()));
+  if (reader < 0) throw Error(Fault::cannot_read, fmt::format("{}: no process can be had to read it", name));
   if (reader == 0) run_reader(bytes, results.fd[1], reasons.fd[1]);
   results.shut(1);
   reasons.shut(1);
@@ -349,7 +363,7 @@ NetcdfFile read_netcdf(const std::filesystem::path& path) {
   try {
     NetcdfFile file = Receiver(results.fd[0]).file(size);
     end_reader(false);
-    file.name = path.string();
+    file.name = name;
     return file;
   } catch (const Damage& damage) {
     end_reader(!damage.what.empty());
@@ -359,10 +373,10 @@ NetcdfFile read_netcdf(const std::filesystem::path& path) {
     if (why.empty()) why = damage.what.empty() ? "the netCDF library fails on it" : damage.what;
     throw Error(
         Fault::file_format,
-        fmt::format("{}: the netCDF file is damaged or incomplete ({}). Fetch or write it again", path.string(), why));
+        fmt::format("{}: the netCDF file is damaged or incomplete ({}). Fetch or write it again", name, why));
   } catch (const Error& error) {
     end_reader(true);
-    throw Error(error.fault(), fmt::format("{}: {}", path.string(), error.what()));
+    throw Error(error.fault(), fmt::format("{}: {}", name, error.what()));
   } catch (...) {
     end_reader(true);
     throw;

@@ -65,6 +65,17 @@ struct Circle {
   }
 };
 
+/// cos and sin of m phi_j of a grid's rings, for shifts 0 and 1/2.
+template <class Real>
+struct RingAngles {
+  explicit RingAngles(const SphereGrid& grid)
+      : halves(grid.shift == 0 ? 1 : 2), n(halves * std::size_t(grid.ring_length)), circle(int(n)) {}
+  std::size_t halves, n;
+  Circle<Real> circle;
+  std::size_t first(int m) const { return halves == 1 ? 0 : std::size_t(m) % n; }
+  std::size_t next(std::size_t at, int m) const { return (at + halves * std::size_t(m)) % n; }
+};
+
 /// Real and imaginary part.
 template <class Real>
 struct Pair {
@@ -75,7 +86,8 @@ struct Pair {
 template <class Real>
 std::vector<Real> synthesise(const SphereGrid& grid, int lmax, std::span<const Pair<Real>> coefficients,
                              bool weighted) {
-  const Circle<Real> circle(grid.ring_length);
+  const RingAngles<Real> angles(grid);
+  const Circle<Real>& circle = angles.circle;
   std::vector<Real> values(grid.points(), Real(0));
   const auto n = std::size_t(grid.ring_length);
   for (int i = 0; i < grid.rings; ++i) {
@@ -93,7 +105,7 @@ std::vector<Real> synthesise(const SphereGrid& grid, int lmax, std::span<const P
       }
       const Real factor = (m == 0 ? Real(1) : Real(2)) * weight;
       if (m == 0) sum.im = Real(0);
-      for (std::size_t j = 0, at = 0; j < n; ++j, at = (at + std::size_t(m)) % n)
+      for (std::size_t j = 0, at = angles.first(m); j < n; ++j, at = angles.next(at, m))
         values[ring * n + j] += factor * (sum.re * circle.cosine[at] - sum.im * circle.sine[at]);
     }
   }
@@ -103,7 +115,8 @@ std::vector<Real> synthesise(const SphereGrid& grid, int lmax, std::span<const P
 /// a_lm = sum over the points of f conj(Y_lm), with the quadrature weights if `weighted`, for one field.
 template <class Real>
 std::vector<Pair<Real>> analyse(const SphereGrid& grid, int lmax, std::span<const Real> values, bool weighted) {
-  const Circle<Real> circle(grid.ring_length);
+  const RingAngles<Real> angles(grid);
+  const Circle<Real>& circle = angles.circle;
   std::vector<Pair<Real>> coefficients(SphereCoefficients::count(lmax));
   const auto n = std::size_t(grid.ring_length);
   for (int i = 0; i < grid.rings; ++i) {
@@ -113,7 +126,7 @@ std::vector<Pair<Real>> analyse(const SphereGrid& grid, int lmax, std::span<cons
                  : Real(1);
     for (int m = 0; m <= lmax; ++m) {
       Pair<Real> sum;
-      for (std::size_t j = 0, at = 0; j < n; ++j, at = (at + std::size_t(m)) % n) {
+      for (std::size_t j = 0, at = angles.first(m); j < n; ++j, at = angles.next(at, m)) {
         sum.re += values[ring * n + j] * circle.cosine[at];
         sum.im -= values[ring * n + j] * circle.sine[at];
       }

@@ -63,7 +63,7 @@ void synthesise_derivatives(SphereTransform& transform, int fields, std::span<co
   const auto length = std::size_t(grid.ring_length);
   std::vector<double> cosine(length), sine(length);
   for (std::size_t j = 0; j < length; ++j) {
-    const long double phi = 2 * std::numbers::pi_v<long double> * j / length;
+    const long double phi = 2 * std::numbers::pi_v<long double> * (j + static_cast<long double>(grid.shift)) / length;
     cosine[j] = double(std::cos(phi));
     sine[j] = double(std::sin(phi));
   }
