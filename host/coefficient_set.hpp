@@ -51,6 +51,7 @@ struct CoefficientSet {
   Form form = Form::real;
   Convention convention;
   bool convention_stated = true;     ///< false: the file does not say; what its format's users mostly take was assumed
+  bool units_stated = true;          ///< false: of a potential; the format or its users' custom was followed
   std::vector<double> first, second; ///< C_lm and S_lm, or real and imaginary part; order as in SphereCoefficients
 
   std::vector<std::string> names;         ///< one a field, empty where there is none

@@ -38,7 +38,8 @@ run() {
   rm -rf -- "$inputs"
   mkdir -p "$inputs/seeds"
   for suffix in $(seeds "$reader"); do
-    for file in tests/corpus/accepted/*."$suffix" tests/corpus/refused/*."$suffix" "tests/fuzz/seeds/$reader"/*; do
+    for file in tests/corpus/accepted/*."$suffix" tests/corpus/refused/*."$suffix" \
+      tests/corpus/coefficients/*."$suffix" "tests/fuzz/seeds/$reader"/*; do
       [[ -f $file ]] && cp -- "$file" "$inputs/seeds/"
     done
   done

@@ -41,8 +41,7 @@ const std::string good = "a model of nothing\n"
                          "gfc 2 2 2.5e-6 -1.4e-6 1e-12 1e-12\n";
 
 CoefficientSet read_text_as_gfc(const std::string& path, const std::string& text) {
-  write_text(path, text);
-  return read_gfc(path);
+  return parse_gfc(text, path);
 }
 
 // Against the polyhedron in random directions at 1.5 and 3 Brillouin radii; the largest error over its bound.
@@ -113,6 +112,18 @@ TEST_CASE("a model as others write it is read: D exponents, any order, errors, t
       read_text_as_gfc(folder / "m.gfc", replaced(replaced(later, "gfc 1 0 0 0 0 0\n", ""), "gfc 1 1 0 0 0 0\n", ""));
   CHECK(short_set.first == set.first);
   CHECK(short_set.notes.size() == 2);
+  CHECK_THAT(short_set.notes.at(1), Contains("degrees 0 and 1") && Contains("C_00 = 1"));
+  // Comments among the rows, no product_type and no norm.
+  const CoefficientSet bare = read_text_as_gfc(
+      folder / "m.gfc",
+      replaced(replaced(replaced(good, "===\nproduct_type gravity_field\n", "===\n"), "norm fully_normalized\n", ""),
+               "gfc 1 1", "# degree 1\ncmmt is the centre of mass\n\ngfc 1 1"));
+  CHECK(bare.first == set.first);
+  CHECK(bare.second == set.second);
+  std::string notes;
+  for (const std::string& note : bare.notes) notes += note + "\n";
+  CHECK_THAT(notes, Contains("no product_type") && Contains("no norm") && Contains("2 comments among the rows") &&
+                        Contains("line 15"));
 }
 
 TEST_CASE("a .gfc file reads back to the last bit, with everything it says", "[gfc]") {
@@ -158,6 +169,39 @@ TEST_CASE("a .gfc file reads back to the last bit, with everything it says", "[g
   }
 }
 
+TEST_CASE("rows that a gravity model leaves out are 0, and a note counts them; one that was cut off is refused", "[gfc]") {
+  const std::string bytes = read_text(std::string(COWGPU_CORPUS) + "/coefficients/gfc--rows-left-out.gfc");
+  const CoefficientSet set = parse_gfc(bytes, "m.gfc");
+  CHECK(set.lmax == 3);
+  CHECK(set.first[0] == 1);
+  CHECK(set.first[set.index(0, 2, 0)] == -4.84e-4);
+  CHECK(set.first[set.index(0, 3, 0)] == 9.57e-7);
+  for (int l = 1; l <= 3; ++l)
+    for (int m = 1; m <= l; ++m)
+      CHECK((set.first[set.index(0, l, m)] == 0 && set.second[set.index(0, l, m)] == 0));
+  std::string notes;
+  for (const std::string& note : set.notes) notes += note + "\n";
+  CHECK_THAT(notes, Contains("5 rows that the file leaves out, the first of degree 2, order 1") && Contains("degree 1 that"));
+  // Without its last row there is none of degree 3.
+  CHECK_THAT(fault_of([&] { parse_gfc(bytes.substr(0, bytes.find("gfc    3")), "m.gfc"); }),
+             StartsWith("file-truncated: m.gfc:") && Contains("its largest degree is 3"));
+  // The rows of a file of ours are all there.
+  CHECK_THAT(fault_of([&] { parse_gfc("# cowgpu 1\n" + bytes, "m.gfc"); }), StartsWith("file-truncated: "));
+}
+
+TEST_CASE("a gravity model in kilometres is told by its body, or by the user", "[gfc][length-unit]") {
+  std::string moon = replaced(replaced(good, "0.3986004415D+15", "4902.8"), "0.63781363e7", "1738.0");
+  const CoefficientSet guessed = parse_gfc(moon, "m.gfc"), stated = parse_gfc(moon, "m.gfc", 1.0);
+  CHECK(guessed.reference_radius == 1738e3);
+  CHECK(guessed.gm == Approx(4902.8e9).epsilon(1e-15));
+  CHECK_THAT(guessed.notes.back(), Contains("kilometres were taken") && Contains("the Moon"));
+  CHECK(stated.reference_radius == 1738.0);
+  CHECK(stated.gm == 4902.8);
+  moon = replaced(moon, "4902.8", "4802.8"); // nobody's
+  CHECK(parse_gfc(moon, "m.gfc").reference_radius == 1738.0);
+  CHECK(parse_gfc(moon, "m.gfc", 1000.0).reference_radius == 1738e3);
+}
+
 TEST_CASE("gravity models that are wrong are named errors with file and line", "[gfc]") {
   const TemporaryFolder folder;
   const std::string path = folder / "m.gfc";
@@ -180,11 +224,12 @@ TEST_CASE("gravity models that are wrong are named errors with file and line", "
       {"file-syntax", 17, replaced(good, "gfc 1 1", "gfc -1 1"), "the degree"},
       {"file-syntax", 15, replaced(good, "-0.484165371736E-03 0.0", "-0.484165371736E-03 0.5"), "order 0"},
       {"file-syntax", 19, replaced(good, "2.5e-6", "nan"), "finite"},
-      {"file-syntax", 19, replaced(good, "2.5e-6", "1e999"), "no place"},
+      {"file-syntax", 19, replaced(good, "2.5e-6", "1e999"), "a place in a double"},
       {"file-syntax", 19, replaced(good, "2.5e-6", "2.5e-6x"), "a number expected"},
       {"file-truncated", 19, replaced(good, "2.5e-6 -1.4e-6 1e-12 1e-12", "2.5e-6"), "found 4 words"},
-      {"file-truncated", 18, replaced(good, "gfc 2 2 2.5e-6 -1.4e-6 1e-12 1e-12\n", ""), "gfc 2 2"},
-      {"file-truncated", 19, replaced(good, "max_degree 2\n", "max_degree 8192\n"), "gfc 3 0"},
+      {"file-truncated", 18, replaced(good, "gfc 2 2 2.5e-6 -1.4e-6 1e-12 1e-12\n", ""), "degree 2, order 2"},
+      {"file-truncated", 19, replaced(good, "max_degree 2\n", "max_degree 8192\n"), "degree 3, order 0"},
+      {"too-large", 20, replaced(good, "max_degree 2\n", "max_degree 8192\n") + "gfc 8192 0 1 0\n", "1000 a row"},
       {"file-syntax", 9, replaced(good, "max_degree 2\n", "max_degree 8193\n"), "max_degree"},
       {"file-syntax", 13, replaced(good, "radius 0.63781363e7\n", "radius_of_it\n"), "radius"},
       {"file-syntax", 8, replaced(good, "radius 0.63781363e7\n", "radius -1\n"), "above 0"},

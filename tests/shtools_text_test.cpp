@@ -22,8 +22,7 @@ using Catch::StartsWith;
 namespace {
 
 CoefficientSet read_as_text(const std::string& path, const std::string& text) {
-  write_text(path, text);
-  return read_shtools_text(path);
+  return parse_shtools_text(text, path);
 }
 
 CoefficientSet written_and_read(const CoefficientSet& set, const std::string& path) {
@@ -51,6 +50,7 @@ TEST_CASE("SHTOOLS text as pyshtools writes it is read, with and without its hea
   CHECK_FALSE(field.convention_stated);
   CHECK(field.convention == Convention{Normalisation::four_pi, Phase::none});
   CHECK_THAT(field.notes.at(0), Contains("pyshtools"));
+  CHECK(field.units_stated);
   CHECK(field.first[field.index(0, 1, 1)] == -0.1);
   CHECK(field.second[field.index(0, 1, 1)] == 3);
   // SHGravCoeffs.to_file: '{:.16e}, {:.16e}, {:.16e}, {:d}' of r0, gm, omega, lmax
@@ -147,9 +147,11 @@ TEST_CASE("a .sh file that is wrong is a named error with file and line", "[shto
       {"file-truncated", 4, good.substr(0, good.find("0, 0")), "before the first row"},
       {"file-truncated", 10, replaced(good, "2, 2, 8, 9\n", ""), "degree 2, order 2"},
       {"file-truncated", 2, replaced(good, "# lmax 2", "# lmax 8192"), "lmax is 8192"},
-      {"file-truncated", 2, replaced(good, "# lmax 2", "# lmax 1"), "lmax is 1"},
-      {"file-syntax", 7, replaced(good, "1, 1, 3", "1, 0, 3"), "degree 1, order 1 expected"},
-      {"file-syntax", 7, replaced(good, "1, 1, 3", "2, 0, 3"), "degree 1, order 1 expected"},
+      {"file-syntax", 2, replaced(good, "# lmax 2", "# lmax 1"), "lmax is 1"},
+      {"file-syntax", 7, replaced(good, "1, 1, 3, 4", "1, 0, 3, 0"), "degree 1, order 0 a second time; line 6"},
+      {"file-syntax", 8, replaced(good, "1, 1, 3, 4", "2, 0, 3, 0"), "degree 2, order 0 a second time; line 7"},
+      {"file-syntax", 7, replaced(good, "1, 1, 3", "1, 2, 3"), "the order is '2'"},
+      {"file-syntax", 7, replaced(good, "1, 1, 3", "x1, 1, 3"), "expected, found 'x1, 1, 3"},
       {"file-truncated", 7, replaced(good, "1, 1, 3, 4", "1, 1, 3"), "S is missing"},
       {"file-truncated", 7, replaced(good, "1, 1, 3, 4", "1, 1"), "found 2 words"},
       {"file-syntax", 7, replaced(good, "1, 1, 3, 4", "1, 1, inf, 4"), "finite"},
@@ -157,7 +159,7 @@ TEST_CASE("a .sh file that is wrong is a named error with file and line", "[shto
       {"file-format", 7, replaced(good, "1, 1, 3, 4", "1, 1, (3+4j), 4"), "complex"},
       {"file-syntax", 6, replaced(good, "1, 0, 2, 0", "1, 0, 2, 1"), "order 0"},
       {"file-syntax", 3, replaced(good, "ortho", "orthogonal"), "orthogonal"},
-      {"file-syntax", 5, replaced(good, "0, 0, 1.5", "8000, 0, 1.5"), "first degree"},
+      {"file-syntax", 2, replaced(good, "0, 0, 1.5", "8000, 0, 1.5"), "lmax is 2"},
       {"file-syntax", 5, replaced(good, "0, 0, 1.5", "-1, 0, 1.5"), "above 0"},
       {"file-truncated", 11, replaced(good, "# phase cs", "# phase cs\n# kind potential").substr(0, 1000), "r0"},
   };

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <cmath>
 #include <numbers>
 
@@ -43,18 +42,7 @@ Placement parse_placement(const BodyOptions& options) {
     placement.metric = true;
   }
   if (!options.length_unit.empty()) {
-    // "mm" is one of them.
-    const bool bare = std::isalpha(static_cast<unsigned char>(options.length_unit.front())) != 0;
-    const Measure unit = parse_measure("--length-unit", (bare ? "1" : "") + options.length_unit, Dimension::length);
-    if (!unit.has_unit)
-      throw Error(
-          Fault::bad_argument,
-          fmt::format("--length-unit {0}: {0} of what? It is the length that 1 in the mesh's file stands for, such as "
-                      "mm or 2.3m",
-                      options.length_unit));
-    if (!(unit.value > 0))
-      throw Error(Fault::bad_argument, fmt::format("--length-unit {}: it must be above 0", options.length_unit));
-    placement.scale = unit.value;
+    placement.scale = parse_length_unit(options.length_unit);
     placement.metric = true;
   }
   if (!options.axes.empty()) placement.rotation = axes_rotation(options.axes);
@@ -118,7 +106,8 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
   command
       .add_option(
           "--length-unit", options.length_unit,
-          "The length that 1 in the mesh's file stands for: mm, km, 2.3m ...; results are in metres and kilograms")
+          "The length that 1 in the file stands for, of a mesh or of coefficients that do not say it: mm, km, 2.3m ...; "
+          "results are in metres and kilograms")
       ->type_name("LENGTH")
       ->check(not_empty());
   command

@@ -1,7 +1,9 @@
 #include "host/cli/commands.hpp"
 
+#include "host/cli/quantities.hpp"
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
+#include "host/io/coefficient_metadata.hpp"
 #include "host/spectrum/convert.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +22,7 @@ struct Options {
   std::optional<int> lmax;
   std::string rotation, angle_unit = "degrees";
   bool si = false;
+  std::string length_unit;
 };
 
 // What is asked for, and what the output's format asks for where nothing is.
@@ -78,6 +81,7 @@ std::string described(const CoefficientSet& set) {
   if (set.fields > 1) text = fmt::format("{} fields: ", set.fields) + text;
   if (set.reference_radius) text += fmt::format(", R = {}", *set.reference_radius);
   if (set.gm) text += fmt::format(", GM = {}", *set.gm);
+  if (const std::string field = coefficients_of(set); !field.empty()) text += "\n      coefficients of " + field;
   return text;
 }
 
@@ -87,7 +91,7 @@ void run(const Options& options, const Common& common) {
   std::optional<EulerAngles> angles;
   if (!options.rotation.empty()) angles = angles_of(options);
   AtomicFile file(options.output); // before long work: a result that cannot be written should fail now
-  CoefficientSet set = read_coefficient_set(options.input, options.of);
+  CoefficientSet set = read_in_unit(options.input, options.of, stated_metres(options.length_unit));
   const std::string before = described(set);
   state_convention(options, set);
   if (options.si) state_si(set);
@@ -124,8 +128,8 @@ void add_convert(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand("convert", "Coefficients in another file format, convention, radius or frame");
   command
       ->add_option("IN", options->input,
-                   "Coefficients: .json or .csv (of `expand` or `convert`), .nc (as pyshtools writes them), .gfc "
-                   "(ICGEM), .sh (SHTOOLS)")
+                   "Coefficients, told by their content: JSON or CSV (of `expand` or `convert`), netCDF (as pyshtools writes "
+                   "them), ICGEM's .gfc, SHTOOLS text, gravity tables (SHADR: .tab, .sha, .txt ...)")
       ->required();
   command->add_option("OUT", options->output, "FILE.json, .csv, .nc, .gfc or .sh")->required();
   command->add_option("--of", options->of, "Of a result of `expand`: mass (default), harmonic, stretch, smooth or flow")
@@ -154,13 +158,19 @@ void add_convert(CLI::App& app, Common& common) {
   add_degree_option(*command, options->lmax.emplace(-1), "Leave out the degrees above");
   command
       ->add_option("--input-normalisation", options->input_normalisation,
-                   "Of IN, where a .sh file does not say it (4pi)")
+                   "Of IN, where a table does not say it (4pi)")
       ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
   command->add_option("--input-phase", options->input_phase, "The same (none)")->check(CLI::IsMember({"cs", "none"}));
   command->add_flag("--si", options->si,
                     "Lengths of IN are metres and its density is in kg/m^3: GM = 6.6743e-11 m^3/(kg s^2) M");
+  add_length_unit_option(*command, options->length_unit, "Of IN");
+  command->get_option("--si")->excludes("--length-unit");
   add_run_options(*command, common);
-  command->footer("host/convention.hpp and host/coefficient_set.hpp say what the conventions are.\n"
+  command->footer("Coefficients are of a field on the unit sphere, and it is the same field in every convention. Of multipoles that is\n"
+                  "f = sum of conj(Q_lm) / R^l Y_lm, Q_lm = integral of density r^l Y_lm with orthonormal Y_lm: --normalisation\n"
+                  "4pi gives the 4pi coefficients of f, which are Q_lm / (R^l sqrt(4 pi)) and no moments with other Y_lm. Of a\n"
+                  "potential (--kind potential) it is f = V R / GM at r = R. Files say it as coefficients_of.\n"
+                  "host/convention.hpp and host/coefficient_set.hpp say what the conventions are.\n"
                   "Example: cowgpu expand benchmark --lmax 64 -o cow.json && cowgpu convert cow.json cow.gfc");
   command->callback([options, &common] {
     if (*options->lmax < 0) options->lmax.reset();

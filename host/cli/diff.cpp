@@ -1,7 +1,10 @@
 #include "host/cli/commands.hpp"
 
+#include "host/cli/quantities.hpp"
 #include "host/error.hpp"
+#include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
+#include "host/io/length_unit.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/convert.hpp"
 #include "host/spectrum/difference.hpp"
@@ -19,13 +22,17 @@ struct Options {
   std::string of, field;
   std::string normalisation = "orthonormal", phase = "cs";
   std::optional<double> tolerance;
+  std::string length_unit;
   bool json = false;
 };
 
-CoefficientSet read(const Options& options, const std::string& path) {
-  const std::string suffix = std::filesystem::path(path).extension();
-  const bool result = suffix == ".json" || suffix == ".csv";
-  CoefficientSet set = read_coefficient_set(path, result ? options.of : "");
+// --of and --length-unit are for the one of both files, or for both, that they are about.
+CoefficientSet read(const Options& options, const std::string& path, bool& unit_used) {
+  const auto metres = stated_metres(options.length_unit);
+  CoefficientSet set = read_coefficient_set(path, can_hold_expansions(path) ? options.of : "", metres);
+  const bool metric = set.units_stated && set.length_unit == "m";
+  if (metres && set.units_stated && !metric && !set.length_unit.empty()) state_length_unit(set, *metres, path);
+  unit_used = unit_used || !metric;
   return options.field.empty() || set.fields == 1 ? set : single_field(set, options.field);
 }
 
@@ -103,7 +110,10 @@ void write_screen(const Options& options, const CoefficientDifference& result, c
 }
 
 void run(const Options& options, const Common& common) {
-  const CoefficientSet a = read(options, options.first), b = read(options, options.second);
+  bool unit_used = false;
+  const CoefficientSet a = read(options, options.first, unit_used), b = read(options, options.second, unit_used);
+  if (!options.length_unit.empty() && !unit_used)
+    throw Error(Fault::bad_argument, "--length-unit: both files are in metres already");
   std::vector<std::string> notes;
   for (const std::string& note : a.notes) notes.push_back("A: " + note);
   for (const std::string& note : b.notes) notes.push_back("B: " + note);
@@ -124,7 +134,7 @@ void run(const Options& options, const Common& common) {
 void add_diff(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("diff", "Two files of coefficients, degree by degree");
-  command->add_option("A", options->first, "Coefficients: .json, .csv, .nc, .gfc or .sh")->required();
+  command->add_option("A", options->first, "Coefficients of any format that `convert` reads, told by their content")->required();
   command->add_option("B", options->second, "Others, of any format and convention")->required();
   command->add_option("--of", options->of, "Of results of `expand`: mass (default), harmonic, stretch, smooth or flow")
       ->type_name("NAME");
@@ -137,6 +147,7 @@ void add_diff(CLI::App& app, Common& common) {
                    "neighbours on each side")
       ->check(non_negative_number())
       ->type_name("T");
+  add_length_unit_option(*command, options->length_unit, "Of A and B");
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.diff.v1.json)");
   command->footer("B is brought to the kind and reference radius of A. Exit code 0, or 1 beyond --tolerance.\n"
                   "Example: cowgpu diff cow.json cow.gfc --tolerance 1e-15");

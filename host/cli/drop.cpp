@@ -2,6 +2,7 @@
 #include "host/cli/quantities.hpp"
 
 #include "host/error.hpp"
+#include "host/io/coefficient_content.hpp"
 #include "host/physics/drop.hpp"
 
 #include <Eigen/Geometry>

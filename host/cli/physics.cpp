@@ -1,6 +1,7 @@
 #include "host/cli/physics.hpp"
 
 #include "host/error.hpp"
+#include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/physics/paper.hpp"
@@ -15,7 +16,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 namespace cowgpu::cli {
 namespace {
@@ -86,7 +86,8 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
   CLI::App* command = app.add_subcommand(application.name, application.summary);
   const auto options = std::make_shared<PhysicsOptions>();
   add_body_options(*command, options->body);
-  command->get_option("mesh")->description("Coefficients of its mass (FILE.json, .csv, .nc, .gfc, .sh), or a mesh: " +
+  command->get_option("mesh")->description("Coefficients of its mass (JSON, CSV, netCDF, ICGEM's .gfc, SHTOOLS text or a gravity table, told by their "
+                                           "content), or a mesh: " +
                                            command->get_option("mesh")->get_description());
   command->get_option("mesh")->type_name("MESH|COEFFS");
   const Solve solve = application.add(*command, common);
@@ -113,12 +114,6 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
 }
 
 } // namespace
-
-bool is_coefficient_file(const std::string& input) {
-  const std::string suffix = std::filesystem::path(input).extension();
-  constexpr std::array suffixes = {".json", ".csv", ".nc", ".gfc", ".sh"};
-  return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
-}
 
 void refuse_placing(const BodyOptions& body) {
   for (const auto& [given, option] :
@@ -148,6 +143,13 @@ void restate_density(const PhysicsOptions& options, CoefficientSet& set) {
     if (*of_mass) **of_mass *= factor;
 }
 
+// The units that the options state and that are not in the numbers yet: those of a file without units are.
+StatedUnits units_beside(const PhysicsInput& input, const PhysicsOptions& options) {
+  StatedUnits stated = stated_units(options.body);
+  if (input.coefficients && !input.coefficients->units_stated) stated.metric = false;
+  return stated;
+}
+
 } // namespace
 
 PhysicsInput load_input(const PhysicsOptions& options) {
@@ -157,9 +159,10 @@ PhysicsInput load_input(const PhysicsOptions& options) {
     input.body = load_body(body, input.notes);
     return input;
   }
-  stated_units(body);
+  const StatedUnits stated = stated_units(body);
   refuse_placing(body);
-  input.coefficients = read_coefficient_set(body.mesh);
+  input.coefficients =
+      read_coefficient_set(body.mesh, "", stated.metric ? std::optional(stated.metres) : std::nullopt);
   input.notes = input.coefficients->notes;
   if (options.density_given && input.coefficients->kind != CoefficientKind::field)
     restate_density(options, *input.coefficients);
@@ -196,7 +199,7 @@ PlacedTensors placed_tensors(const PhysicsInput& input, const PhysicsOptions& op
     placed.unit_kg = input.body->density * metres * metres * metres;
     return placed;
   }
-  const StatedUnits stated = stated_units(options.body);
+  const StatedUnits stated = units_beside(input, options);
   placed.tensors = physics::mass_tensors(*input.coefficients);
   if (placed.tensors.metric()) {
     if (stated.metric)
@@ -243,7 +246,7 @@ PlacedMoments placed_moments(const PhysicsInput& input, const PhysicsOptions& op
     return placed;
   }
   const CoefficientSet& set = *input.coefficients;
-  const StatedUnits stated = stated_units(options.body);
+  const StatedUnits stated = units_beside(input, options);
   placed.moments = physics::mass_moments(set, lmax);
   placed.metric = set.length_unit == "m" && set.mass_unit == "kg";
   if (placed.metric && options.body.charge)
@@ -277,7 +280,7 @@ physics::Findings findings_about(const PhysicsInput& input, const PhysicsOptions
   }
   if (input.body)
     note_density(options, input.body->placement.metric, findings.notes);
-  else if (stated_units(options.body).metric && !options.density_given && !options.body.charge)
+  else if (units_beside(input, options).metric && !options.density_given && !options.body.charge)
     findings.notes.push_back(fmt::format("the density was not given: that of the file, {:.6g}, is taken as kg/m3",
                                          input.coefficients->density.value_or(1)));
   return findings;

@@ -30,9 +30,6 @@ struct PhysicsInput {
   std::vector<std::string> notes;
 };
 
-/// Whether an input names a file of coefficients, by its suffix: .json, .csv, .nc, .gfc, .sh.
-bool is_coefficient_file(const std::string& input);
-
 /// Throws Error(bad_argument) for options that place a mesh, where the input is coefficients.
 void refuse_placing(const BodyOptions& body);
 

@@ -3,6 +3,7 @@
 #include "host/cli/order_list.hpp"
 #include "host/cli/potential_places.hpp"
 #include "host/error.hpp"
+#include "host/io/coefficient_content.hpp"
 #include "host/io/potential_file.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"

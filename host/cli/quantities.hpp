@@ -5,8 +5,10 @@
 #include "host/types.hpp"
 #include "host/units.hpp"
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 
 namespace cowgpu::cli {
@@ -19,6 +21,14 @@ Measure parse_quantity(const std::string& option, const std::string& text, Dimen
 
 /// The same where it must also be above 0.
 double parse_positive(const std::string& option, const std::string& text, Dimension dimension, const char* example);
+
+/// What --length-unit says: a length with its unit, or a unit alone ("km"), in metres. Throws Error(bad_argument).
+double parse_length_unit(const std::string& text);
+
+/// Adds --length-unit to a command that reads files of coefficients; `of` says which. Its text goes to read_in_unit() by way of
+/// stated_metres(), which is empty where the option is not given.
+void add_length_unit_option(CLI::App& command, std::string& text, const char* of);
+std::optional<double> stated_metres(const std::string& text);
 
 /// "ALPHA,BETA,GAMMA" in degrees as R_z(ALPHA) R_y(BETA) R_z(GAMMA); multiples of 90 are exact. Throws Error(bad_argument).
 Eigen::Matrix3d parse_rotation(const std::string& option, const std::string& text);

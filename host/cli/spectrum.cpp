@@ -1,5 +1,6 @@
 #include "host/cli/commands.hpp"
 
+#include "host/cli/quantities.hpp"
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/shown.hpp"
@@ -16,7 +17,7 @@ namespace cowgpu::cli {
 namespace {
 
 struct Options {
-  std::string input;
+  std::string input, length_unit;
   bool cross = false;
   bool json = false;
 };
@@ -73,7 +74,7 @@ void write_column(const Column& column, const char* symbol, const char* sum) {
 }
 
 void run(const Options& options, const Common& common) {
-  const CoefficientFile file = read_coefficients(options.input);
+  const CoefficientFile file = read_coefficients(options.input, stated_metres(options.length_unit));
   const SphereCoefficients& a = file.coefficients;
   if (options.cross && a.fields != 2)
     throw Error(Fault::bad_argument,
@@ -125,8 +126,9 @@ void add_spectrum(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand("spectrum", "Power per degree of coefficients in a file");
   command
       ->add_option("FILE", options->input,
-                   "Coefficients: .nc (as pyshtools writes them), .csv, .json, .gfc (ICGEM) or .sh (SHTOOLS)")
+                   "Coefficients of any format that `convert` reads, told by their content")
       ->required();
+  add_length_unit_option(*command, options->length_unit, "Of FILE");
   command->add_flag("--cross", options->cross, "For two fields: their cross spectrum too");
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.spectrum.v1.json)");
   command->footer(

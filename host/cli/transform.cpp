@@ -1,6 +1,7 @@
 #include "host/cli/commands.hpp"
 
 #include "host/clock.hpp"
+#include "host/cli/quantities.hpp"
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/grid_file.hpp"
@@ -21,7 +22,7 @@ namespace cowgpu::cli {
 namespace {
 
 struct Options {
-  std::string input, output;
+  std::string input, output, length_unit;
   int lmax = -1;    // -1: the file's
   std::string grid; // empty: the file's
   std::string normalisation = "orthonormal", phase = "cs";
@@ -200,7 +201,7 @@ SphereCoefficients resized(const SphereCoefficients& a, int lmax) {
 void synthesise(const Options& options, const Common& common) {
   const auto file = open_output(options);
   auto start = Clock::now();
-  CoefficientFile in = read_coefficients(options.input);
+  CoefficientFile in = read_coefficients(options.input, stated_metres(options.length_unit));
   Run run;
   run.read_seconds = seconds_since(start);
   run.what = "synthesis";
@@ -250,7 +251,8 @@ void add_analyse(CLI::App& transform, Common& common) {
   CLI::App* command = transform.add_subcommand("analyse", "Coefficients of the fields on a grid");
   command
       ->add_option("IN", options->input,
-                   "Grid file, .nc (dimensions lat and lon, in degrees; pyshtools' grids too) or .csv (lat,lon,value)")
+                   "Grid file, .nc (latitudes and longitudes in degrees, in any order; pyshtools' grids too) or .csv "
+                   "(lat,lon,value)")
       ->required();
   command->add_option("OUT", options->output, "Coefficient file, .nc (as pyshtools writes them) or .csv (l,m,C,S)")
       ->required();
@@ -258,7 +260,7 @@ void add_analyse(CLI::App& transform, Common& common) {
   add_grid_option(
       *command, options->grid,
       "What the file's grid is: gl (Gauss-Legendre), cc (Clenshaw-Curtis, both poles), dh (Driscoll-Healy, n "
-      "rings of 2n points), dh1 (n of n) (default: as the file says)");
+      "rings of 2n points), dh1 (n of n), f1 (Fejer: cell-centred) (default: as the file says)");
   add_convention_options(*command, options->normalisation, options->phase, "Of the coefficients written");
   for (const char* option : {"--normalisation", "--phase"}) command->get_option(option)->capture_default_str();
   add_direction_options(*command, *options, common);
@@ -275,8 +277,7 @@ void add_synthesise(CLI::App& transform, Common& common) {
   CLI::App* command = transform.add_subcommand("synthesise", "Fields on a grid from their coefficients");
   command
       ->add_option("IN", options->input,
-                   "Coefficient file, .nc (as pyshtools writes them) or .csv (l,m,C,S), of any convention; or what "
-                   "`cowgpu expand -o` wrote")
+                   "Coefficients of any convention and of any format that `convert` reads, told by their content")
       ->required();
   command->add_option("OUT", options->output, "Grid file, .nc or .csv (lat,lon,value)")->required();
   add_degree_option(*command, options->lmax,
@@ -284,8 +285,9 @@ void add_synthesise(CLI::App& transform, Common& common) {
   add_grid_option(
       *command, options->grid,
       "gl (Gauss-Legendre), cc (Clenshaw-Curtis, both poles), dh (Driscoll-Healy, n rings of 2n points), dh1 "
-      "(n of n); for pyshtools take dh");
+      "(n of n), f1 (Fejer, cell-centred: n of 2n); for pyshtools take dh");
   command->get_option("--grid")->capture_default_str();
+  add_length_unit_option(*command, options->length_unit, "Of IN");
   add_direction_options(*command, *options, common);
   command->footer("Values have the unit of the coefficients; latitudes and longitudes are in degrees.\n"
                   "Example: cowgpu transform synthesise coefficients.nc map.nc --grid dh --lmax 180");

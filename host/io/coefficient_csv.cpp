@@ -145,8 +145,8 @@ void append_pair(std::string& text, double first, double second, std::string_vie
   append_number(text, second);
 }
 
-CoefficientSet read_csv_coefficients(const std::filesystem::path& path, const std::string& of) {
-  const CsvTable table = read_csv(path);
+CoefficientSet parse_csv_coefficients(std::string_view bytes, const std::string& name, const std::string& of) {
+  const CsvTable table = parse_csv(bytes, name);
   const int fields = int(table.columns.size() / 2) - 1;
   const std::vector<std::string> complex = complex_fields(table.columns);
   if (fields < 1 || fields > most_fields || (complex.empty() && table.columns != real_columns(fields)))

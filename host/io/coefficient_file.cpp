@@ -1,8 +1,11 @@
 #include "host/io/coefficient_file.hpp"
 
 #include "host/error.hpp"
+#include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_formats.hpp"
+#include "host/io/foreign_file.hpp"
 #include "host/io/gfc.hpp"
+#include "host/io/length_unit.hpp"
 #include "host/io/number.hpp"
 #include "host/io/shtools_text.hpp"
 #include "host/spectrum/convert.hpp"
@@ -12,27 +15,42 @@
 namespace cowgpu {
 
 CoefficientFormat coefficient_format(const std::filesystem::path& path) {
-  const std::string suffix = path.extension();
-  if (suffix == ".json") return CoefficientFormat::json;
-  if (suffix == ".csv") return CoefficientFormat::csv;
-  if (suffix == ".nc") return CoefficientFormat::netcdf;
-  if (suffix == ".gfc") return CoefficientFormat::gfc;
-  if (suffix == ".sh") return CoefficientFormat::shtools;
+  if (const auto format = coefficient_format_named(path)) return *format;
   throw Error(
       Fault::bad_argument,
       fmt::format("{}: the name must end in .nc (netCDF), .csv, .json, .gfc (ICGEM) or .sh (SHTOOLS)", path.string()));
 }
 
-CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std::string& of) {
-  const CoefficientFormat format = coefficient_format(path);
-  if (format == CoefficientFormat::json) return read_json_coefficients(path, of);
-  if (format == CoefficientFormat::csv) return read_csv_coefficients(path, of);
-  if (!of.empty())
+CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std::string& of,
+                                    std::optional<double> metres) {
+  std::string bytes = read_input_file(path);
+  const std::string name = path.string();
+  const auto held = coefficient_format_in(bytes), named = coefficient_format_named(path);
+  if (!held && !named)
+    throw Error(bytes.empty() ? Fault::file_truncated : Fault::file_format,
+                bytes.empty() ? name + ": the file is empty"
+                              : fmt::format("{}: this is no file of coefficients: JSON and CSV of this program, netCDF, "
+                                            "ICGEM's .gfc, and tables with rows degree, order, C, S are read",
+                                            name));
+  const CoefficientFormat format = held ? *held : *named; // where the content says nothing, the reader says what is wrong
+  if (!of.empty() && format != CoefficientFormat::json && format != CoefficientFormat::csv)
     throw Error(Fault::bad_argument,
                 fmt::format("--of {}: {} holds no expansions to choose from; the .json and .csv of `cowgpu expand` do",
-                            of, path.string()));
-  if (format == CoefficientFormat::netcdf) return read_netcdf_coefficients(path);
-  return format == CoefficientFormat::gfc ? read_gfc(path) : read_shtools_text(path);
+                            of, name));
+  switch (format) {
+  case CoefficientFormat::json: return parse_json_coefficients(bytes, name, of);
+  case CoefficientFormat::csv: return parse_csv_coefficients(bytes, name, of);
+  case CoefficientFormat::netcdf: return parse_netcdf_coefficients(std::move(bytes), name, metres);
+  case CoefficientFormat::gfc: return parse_gfc(bytes, name, metres);
+  case CoefficientFormat::shtools: return parse_shtools_text(bytes, name, metres);
+  }
+  return {};
+}
+
+CoefficientSet read_in_unit(const std::filesystem::path& path, const std::string& of, std::optional<double> metres) {
+  CoefficientSet set = read_coefficient_set(path, of, metres);
+  if (metres && set.units_stated) state_length_unit(set, *metres, path.string());
+  return set;
 }
 
 std::string not_held(const CoefficientSet& set, CoefficientFormat format) {
@@ -74,8 +92,8 @@ void write_coefficient_set(const CoefficientSet& set, CoefficientFormat format, 
   }
 }
 
-CoefficientFile read_coefficients(const std::filesystem::path& path) {
-  const CoefficientSet set = read_coefficient_set(path);
+CoefficientFile read_coefficients(const std::filesystem::path& path, std::optional<double> metres) {
+  const CoefficientSet set = read_in_unit(path, "", metres);
   CoefficientFile file;
   // A file whose numbers fit no double in the orthonormal convention is a bad file, not a bad command line.
   try {

@@ -16,6 +16,8 @@
 // JSON: data/schemas/cowgpu.coefficients.v1.json.
 // .gfc: host/io/gfc.hpp. .sh: host/io/shtools_text.hpp. Both real.
 //
+// A file that is read is judged by what it holds (host/io/coefficient_content.hpp), not by its name.
+//
 // Also read: what `cowgpu expand` writes as JSON and CSV. A variable `errors` of pyshtools is left out.
 #pragma once
 
@@ -25,6 +27,7 @@
 #include "host/sphere_coefficients.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,14 +46,20 @@ inline constexpr int largest_file_degree = 8192;
 
 enum class CoefficientFormat { json, csv, netcdf, gfc, shtools };
 
-/// By the suffix: .json, .csv, .nc, .gfc, .sh. Throws Error(bad_argument) for another.
+/// Of a file that is written, by the suffix: .json, .csv, .nc, .gfc, .sh. Throws Error(bad_argument) for another.
 CoefficientFormat coefficient_format(const std::filesystem::path& path);
 
-/// Reads coefficients by the name's suffix. All must be finite. `of` names the expansion of a file that `cowgpu expand`
-/// wrote; empty: the only one, or all columns of a CSV as fields. Throws Error(cannot_read, too_large, file_syntax,
-/// file_truncated, file_format) with file and line or variable, and bad_argument for another suffix or where there is no
-/// expansion `of`.
-CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std::string& of = "");
+/// Reads coefficients of any format, whatever the file's name. All must be finite. `of` names the expansion of a file that
+/// `cowgpu expand` wrote; empty: the only one, or all columns of a CSV as fields. `metres` is the length of the file's unit of
+/// length where the user states it; it counts where the file does not say its units (CoefficientSet::units_stated), see
+/// settle_length_unit(). Throws Error(cannot_read, too_large, file_syntax, file_truncated, file_format) with file and line or
+/// variable, and bad_argument where there is no expansion `of`.
+CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std::string& of = "",
+                                    std::optional<double> metres = {});
+
+/// The same where the user's unit counts in any case: also of a file whose lengths are in the unit of a mesh, by
+/// state_length_unit(). Throws also Error(bad_argument) for a file that says its units.
+CoefficientSet read_in_unit(const std::filesystem::path& path, const std::string& of, std::optional<double> metres);
 
 /// What `format` cannot hold of a set, as a sentence that says which formats can; empty where it can hold it all.
 std::string not_held(const CoefficientSet& set, CoefficientFormat format);
@@ -60,8 +69,8 @@ std::string not_held(const CoefficientSet& set, CoefficientFormat format);
 void write_coefficient_set(const CoefficientSet& set, CoefficientFormat format, AtomicFile& file);
 
 /// The same file as coefficients of fields: of multipoles Q_lm / R^l. Of the JSON of `cowgpu expand` the expansion `mass`.
-/// Throws what read_coefficient_set() throws, and file_format for numbers that fit no double.
-CoefficientFile read_coefficients(const std::filesystem::path& path);
+/// `metres` as read_in_unit() has it. Throws what that throws, and file_format for numbers that fit no double.
+CoefficientFile read_coefficients(const std::filesystem::path& path, std::optional<double> metres = {});
 
 /// Writes them in `convention`; commit() is left to the caller. Throws Error(cannot_write, too_large), and bad_argument as
 /// to_real() does.

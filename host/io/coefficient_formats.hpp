@@ -4,19 +4,20 @@
 #include "host/coefficient_set.hpp"
 #include "host/io/atomic_file.hpp"
 
-#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace cowgpu {
 
-CoefficientSet read_csv_coefficients(const std::filesystem::path& path, const std::string& of);
+/// The readers, of a file's bytes; `name` opens every message.
+CoefficientSet parse_csv_coefficients(std::string_view bytes, const std::string& name, const std::string& of);
 void write_csv_coefficients(const CoefficientSet& set, AtomicFile& file);
 
-CoefficientSet read_netcdf_coefficients(const std::filesystem::path& path);
+CoefficientSet parse_netcdf_coefficients(std::string bytes, const std::string& name, std::optional<double> metres);
 void write_netcdf_coefficients(const CoefficientSet& set, AtomicFile& file);
 
-CoefficientSet read_json_coefficients(const std::filesystem::path& path, const std::string& of);
+CoefficientSet parse_json_coefficients(const std::string& bytes, const std::string& name, const std::string& of);
 void write_json_coefficients(const CoefficientSet& set, AtomicFile& file);
 
 /// What multipoles are, in a sentence.

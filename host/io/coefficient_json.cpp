@@ -34,7 +34,7 @@ std::string number_text(double value) {
 
 std::string text_of(const std::string& name, const json& value, const char* key) {
   if (!value.is_string()) throw Error(Fault::file_syntax, fmt::format("{}: the member '{}' is no text", name, key));
-  return value.get<std::string>();
+  return one_line(value.get<std::string>());
 }
 
 std::vector<std::string> words_of(const std::string& name, const json& value, const char* key) {
@@ -161,7 +161,7 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
   take_metadata(metadata, name, set);
   // Provenance is told where it is there; nothing depends on it.
   const auto text = [](const json& object, const char* key) {
-    return object.is_object() && object.contains(key) && object.at(key).is_string() ? object.at(key).get<std::string>()
+    return object.is_object() && object.contains(key) && object.at(key).is_string() ? one_line(object.at(key).get<std::string>())
                                                                                     : std::string();
   };
   set.provenance.created = text(all, "created");
@@ -173,7 +173,7 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
   if (all.contains("command") && all.at("command").is_array())
     for (const json& word : all.at("command"))
       if (word.is_string())
-        set.provenance.command += (set.provenance.command.empty() ? "" : " ") + word.get<std::string>();
+        set.provenance.command += (set.provenance.command.empty() ? "" : " ") + one_line(word.get<std::string>());
   return set;
 }
 
@@ -183,9 +183,8 @@ std::string expansion_note(std::string_view reference_radius) {
   return fmt::format("these are mass moments Q_lm / R^l with R = {}", shown(reference_radius));
 }
 
-CoefficientSet read_json_coefficients(const std::filesystem::path& path, const std::string& of) {
-  const std::string name = path.string();
-  const json all = result_json::parse(path);
+CoefficientSet parse_json_coefficients(const std::string& bytes, const std::string& name, const std::string& of) {
+  const json all = result_json::parse(name, bytes);
   const json& schema = result_json::member(name, all, "schema");
   if (schema == "cowgpu.result.v1") return read_result(name, all, of);
   if (schema != "cowgpu.coefficients.v1")
@@ -216,7 +215,7 @@ void write_json_coefficients(const CoefficientSet& set, AtomicFile& file) {
   for (const auto& [key, text] : metadata_of(set)) {
     if (among(provenance_words, key)) provenance[key] = text;
     if (key.starts_with("remark.")) remarks[key.substr(7)] = text;
-    if (among(text_words, key)) head[key] = text;
+    if (among(text_words, key) || key == "coefficients_of") head[key] = text;
   }
   const std::array<std::optional<double>, 6> numbers = {
       set.reference_radius, set.density, set.mass, set.second_moment, set.gravitational_constant, set.gm};
@@ -228,7 +227,7 @@ void write_json_coefficients(const CoefficientSet& set, AtomicFile& file) {
   }
   if (!provenance.empty()) head["provenance"] = provenance;
   if (!remarks.empty()) head["remarks"] = remarks;
-  std::string text = head.dump(1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string text = terminal_json(head.dump(1, ' ', false, ordered_json::error_handler_t::replace));
   text.pop_back(); // more members follow
   text.erase(text.find_last_not_of("\n ") + 1);
   file.write(text + ",\n \"coefficients\": [");

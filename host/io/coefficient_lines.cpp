@@ -2,12 +2,12 @@
 
 #include "host/io/coefficient_metadata.hpp"
 #include "host/io/shown.hpp"
+#include "host/io/words.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 namespace cowgpu {
 
@@ -30,19 +30,19 @@ bool WordLines::next() {
   return true;
 }
 
-double WordLines::real(std::string_view word) const {
-  std::string text(word.substr(word.starts_with('+')));
+std::optional<double> WordLines::number_in(std::string_view word) {
+  std::string text(word);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::result_out_of_range)
-    fail(Fault::file_syntax, fmt::format("'{}' has no place in a double", shown(word)));
-  if (error != std::errc() || end != text.data() + text.size() || text.empty())
-    fail(Fault::file_syntax, fmt::format("a number expected, found '{}'", shown(word)));
-  if (!std::isfinite(value))
-    fail(Fault::file_syntax, fmt::format("'{}': every value must be a finite number", shown(word)));
-  return value;
+  return finite_number(text);
+}
+
+double WordLines::real(std::string_view word) const {
+  if (const auto value = number_in(word)) return *value;
+  if (const auto value = to_number(word))
+    fail(Fault::file_syntax,
+         fmt::format("'{}': every value must be a finite number that has a place in a double", shown(word)));
+  fail(Fault::file_syntax, fmt::format("a number expected, found '{}'", shown(word)));
 }
 
 int WordLines::whole(std::string_view word, const char* what, int largest) const {
@@ -62,6 +62,81 @@ void WordLines::judge_end(bool ours, std::vector<std::string>& notes) const {
 
 void WordLines::fail(Fault fault, const std::string& sentence) const {
   throw Error(fault, fmt::format("{}: {}", place(file_, number), sentence));
+}
+
+namespace {
+
+// Where (l, m) stands among all coefficients, by l, then m.
+std::size_t place_of(int l, int m) {
+  return std::size_t(l) * (std::size_t(l) + 1) / 2 + std::size_t(m);
+}
+
+// Degree and order at a place.
+std::pair<int, int> degree_and_order(std::size_t at) {
+  int l = 0;
+  while (place_of(l + 1, 0) <= at) ++l;
+  return {l, int(at - place_of(l, 0))};
+}
+
+// The first place from `next` on that no row has.
+std::size_t first_gap(const std::vector<CoefficientRow>& rows, std::size_t next) {
+  for (const CoefficientRow& row : rows) {
+    const std::size_t at = place_of(row.l, row.m);
+    if (at == next) ++next;
+    if (at > next) break;
+  }
+  return next;
+}
+
+} // namespace
+
+void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordLines& lines, CoefficientSet& set) {
+  const auto before = [](const CoefficientRow& a, const CoefficientRow& b) {
+    return std::pair(place_of(a.l, a.m), a.line) < std::pair(place_of(b.l, b.m), b.line);
+  };
+  if (!std::is_sorted(rows.begin(), rows.end(), before)) std::sort(rows.begin(), rows.end(), before);
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if (rows[i].l == rows[i - 1].l && rows[i].m == rows[i - 1].m) {
+      lines.number = rows[i].line;
+      lines.fail(Fault::file_syntax, fmt::format("degree {}, order {} a second time; line {} has it too", rows[i].l,
+                                                 rows[i].m, rows[i - 1].line));
+    }
+  const std::size_t count = SphereCoefficients::count(lmax);
+  const std::size_t low_places = std::min<std::size_t>(count, 3);
+  const auto low = std::size_t(
+      std::count_if(rows.begin(), rows.end(), [](const CoefficientRow& row) { return row.l < 2; }));
+  const std::size_t missing_low = low_places - low, missing = count - rows.size() - missing_low;
+  const std::size_t last = rows.empty() ? 0 : place_of(rows.back().l, rows.back().m);
+  const auto cut_off = [&](std::size_t at) {
+    const auto [l, m] = degree_and_order(at);
+    lines.fail(Fault::file_truncated,
+               fmt::format("the file ends without a row of degree {}, order {}; its largest degree is {}", l, m, lmax));
+  };
+  if (complete && missing_low > 0) cut_off(first_gap(rows, 0));
+  if (missing > 0) {
+    const std::size_t gap = first_gap(rows, place_of(2, 0));
+    if (complete || gap > last || rows.empty() || rows.back().l < lmax) cut_off(gap);
+    if (count > 100000 + 1000 * rows.size())
+      lines.fail(Fault::too_large,
+                 fmt::format("{} rows, and the {} coefficients to degree {} are more than 1000 a row: almost all of them "
+                             "would be 0",
+                             rows.size(), count, lmax));
+    const auto [l, m] = degree_and_order(gap);
+    set.notes.push_back(fmt::format("{} row{} that the file leaves out, the first of degree {}, order {}, {} taken as 0",
+                                    missing, missing == 1 ? "" : "s", l, m, missing == 1 ? "was" : "were"));
+  }
+  set.lmax = lmax;
+  set.first.assign(count, 0);
+  set.second.assign(count, 0);
+  const bool constant = !rows.empty() && rows[0].l == 0, unit = set.kind == CoefficientKind::potential && !constant;
+  if (missing_low > 0)
+    set.notes.push_back(fmt::format("rows of degree{} 1 that the file leaves out were taken as {}",
+                                    constant ? "" : "s 0 and", unit ? "C_00 = 1 and 0" : "0"));
+  if (unit) set.first[0] = 1;
+  for (const CoefficientRow& row : rows) {
+    set.first[set.index(0, row.l, row.m)] = row.c;
+    set.second[set.index(0, row.l, row.m)] = row.s;
+  }
 }
 
 } // namespace cowgpu

@@ -1,8 +1,10 @@
 // Lines of words and numbers, as gravity models and SHTOOLS files have them.
 #pragma once
 
+#include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +23,9 @@ public:
   std::size_t number = 0;    ///< of the line, from 1
   bool unterminated = false; ///< the line is the file's last one and has no end: it may be a part of one
 
-  /// A finite number, its exponent after E, e, D or d. Throws Error(file_syntax).
+  /// A finite number, its exponent after E, e, D or d; nothing for another word.
+  static std::optional<double> number_in(std::string_view word);
+  /// The same. Throws Error(file_syntax).
   double real(std::string_view word) const;
   /// A whole number from 0 to `largest`. Throws Error(file_syntax).
   int whole(std::string_view word, const char* what, int largest) const;
@@ -35,5 +39,21 @@ private:
   std::string file_;
   std::string_view rest_;
 };
+
+/// A row of a text of coefficients: C and S of a degree and an order, 0 <= m <= l.
+struct CoefficientRow {
+  int l = 0, m = 0;
+  double c = 0, s = 0;
+  std::size_t line = 0;
+};
+
+/// Coefficients of one real field from rows in any order, into `set`, whose kind is set; its lmax becomes `lmax`. Rows that the
+/// file leaves out are 0, C_00 of a potential 1, and notes say so. `complete`: the file has every row, as ours do.
+///
+/// Throws Error(file_syntax) for a row that is there twice, with its line; file_truncated for files that were cut off: rows
+/// are missing where they are all asked for, or there is none of degree `lmax`, or none is missing before the last one and it
+/// is not the last of `lmax`; too_large where so few rows would make a table of more than 1000 coefficients each. Memory: 40
+/// bytes a row, and 16 a coefficient.
+void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordLines& lines, CoefficientSet& set);
 
 } // namespace cowgpu

@@ -3,12 +3,11 @@
 #include "host/error.hpp"
 #include "host/io/number.hpp"
 #include "host/io/shown.hpp"
+#include "host/io/words.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 namespace cowgpu {
 namespace {
@@ -18,8 +17,6 @@ std::string text_of(double value) {
   append_number(text, value);
   return text;
 }
-
-// One line, whatever a command line or a mesh's name held.
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -60,14 +57,12 @@ public:
     return found == metadata_.end() ? nullptr : &found->second;
   }
   void text(const std::string& key, std::string& into) const {
-    if (const MetadataText* at = find(key)) into = at->text;
+    if (const MetadataText* at = find(key)) into = one_line(at->text);
   }
   double number(const std::string& key, const MetadataText& at, std::string_view word) const {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      fail(at, fmt::format("{} is '{}', and that is no finite number", key, shown(word)));
-    return value;
+    const auto value = finite_number(word);
+    if (!value) fail(at, fmt::format("{} is '{}', and that is no finite number", key, shown(word)));
+    return *value;
   }
   void number(const std::string& key, std::optional<double>& into, bool positive) const {
     const MetadataText* at = find(key);
@@ -87,7 +82,7 @@ public:
   void list(const char* key, std::vector<std::string>& into) const {
     const MetadataText* at = find(key);
     if (!at) return;
-    std::vector<std::string> words = split(at->text);
+    std::vector<std::string> words = split(one_line(at->text));
     if (words.size() != into.size())
       fail(*at, fmt::format("{} names {} between commas; the file holds {} of them", key, words.size(), into.size()));
     into = std::move(words);
@@ -99,7 +94,7 @@ public:
     std::string_view rest = at->text;
     if (rest.starts_with('(')) {
       const auto end = rest.find(')');
-      set.origin_kind = rest.substr(1, end == std::string_view::npos ? end : end - 1);
+      set.origin_kind = one_line(rest.substr(1, end == std::string_view::npos ? end : end - 1));
       rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     }
     Vec3 origin;
@@ -127,6 +122,18 @@ std::string place(const std::string& file, std::size_t line) {
   return line ? fmt::format("{}:{}", file, line) : file;
 }
 
+std::string coefficients_of(const CoefficientSet& set) {
+  if (set.kind == CoefficientKind::potential)
+    return "f = V R / GM on the sphere r = R, V the gravitational potential";
+  if (set.kind == CoefficientKind::field) return "";
+  const std::string field = "f = sum of conj(Q_lm) / R^l Y_lm on the unit sphere, Q_lm = integral of density r^l Y_lm";
+  if (set.convention == Convention{})
+    return set.form == Form::complex ? "conj of f: these are Q_lm / R^l; " + field : field;
+  return (set.form == Form::complex ? "conj of " : "") + field +
+         ", both Y_lm orthonormal with the Condon-Shortley phase: the same f as in any other convention, so these are no "
+         "moments of density r^l with other Y_lm";
+}
+
 std::vector<std::pair<std::string, std::string>> metadata_of(const CoefficientSet& set) {
   std::vector<std::pair<std::string, std::string>> list;
   const auto add = [&](const char* key, const std::string& text) {
@@ -140,6 +147,7 @@ std::vector<std::pair<std::string, std::string>> metadata_of(const CoefficientSe
   add("phase", std::string(name(set.convention.phase)));
   if (set.kind != CoefficientKind::field || set.form != Form::real) add("kind", std::string(name(set.kind)));
   if (set.form != Form::real) add("form", std::string(name(set.form)));
+  add("coefficients_of", coefficients_of(set));
   add_number("reference_radius", set.reference_radius);
   if (set.origin) {
     std::string text = set.origin_kind.empty() ? "" : "(" + set.origin_kind + ") ";
@@ -211,8 +219,20 @@ bool take_metadata(const Metadata& metadata, const std::string& file, Coefficien
   read.text("mesh_sha256", set.provenance.mesh_sha256);
   read.text("history", set.provenance.history);
   for (const auto& [key, at] : metadata)
-    if (key.starts_with("remark.") && key.size() > 7) set.remarks.emplace_back(key.substr(7), at.text);
+    if (key.starts_with("remark.") && key.size() > 7) set.remarks.emplace_back(one_line(key.substr(7)), one_line(at.text));
   return normalisation && phase;
+}
+
+double remark_number(const CoefficientSet& set, const std::string& file, std::string_view word, double otherwise) {
+  for (const auto& [key, text] : set.remarks) {
+    if (key != word) continue;
+    const auto value = finite_number(text);
+    if (!value)
+      throw Error(Fault::file_syntax,
+                  fmt::format("{}: the remark {} is '{}', and that is no finite number", file, shown(word, 60), shown(text)));
+    return *value;
+  }
+  return otherwise;
 }
 
 } // namespace cowgpu

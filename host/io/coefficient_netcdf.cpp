@@ -2,6 +2,7 @@
 #include "host/io/coefficient_file.hpp"
 #include "host/io/coefficient_formats.hpp"
 #include "host/io/coefficient_metadata.hpp"
+#include "host/io/length_unit.hpp"
 #include "host/io/netcdf.hpp"
 #include "host/io/shown.hpp"
 #include "host/sphere_transform.hpp"
@@ -100,8 +101,8 @@ void read_gravity(const NetcdfVariable& v, const std::string& where, Coefficient
 
 } // namespace
 
-CoefficientSet read_netcdf_coefficients(const std::filesystem::path& path) {
-  const NetcdfFile netcdf = read_netcdf(path);
+CoefficientSet parse_netcdf_coefficients(std::string bytes, const std::string& name, std::optional<double> metres) {
+  const NetcdfFile netcdf = parse_netcdf(std::move(bytes), name);
   if (netcdf.variable("lat") && netcdf.variable("lon"))
     throw Error(Fault::file_format,
                 fmt::format("{}: this is a grid, not coefficients; `cowgpu transform analyse` makes "
@@ -126,7 +127,7 @@ CoefficientSet read_netcdf_coefficients(const std::filesystem::path& path) {
       throw Error(Fault::file_format, where + ": another convention than the variables before it");
     set.convention = convention;
     read_values(v, int(f), where, set);
-    if (const NetcdfAttribute* title = attribute(v.attributes, "title")) set.names[f] = title->text;
+    if (const NetcdfAttribute* title = attribute(v.attributes, "title")) set.names[f] = one_line(title->text);
   }
   if (fields.size() == 1) read_gravity(*fields[0], netcdf.name, set);
   Metadata metadata;
@@ -136,9 +137,8 @@ CoefficientSet read_netcdf_coefficients(const std::filesystem::path& path) {
   const bool ours = metadata.contains("cowgpu"); // others use such names for other things
   if (ours) take_metadata(metadata, netcdf.name, set);
   if (set.kind == CoefficientKind::potential && !ours) {
-    set.length_unit = "m";
-    set.mass_unit = "kg";
-    set.gravitational_constant = gravitational_constant_si;
+    set.units_stated = false;
+    settle_length_unit(set, metres, true); // pyshtools keeps SI units
   }
   return set;
 }

@@ -2,12 +2,12 @@
 
 #include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
+#include "host/io/words.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <optional>
 
 namespace cowgpu {
@@ -43,15 +43,12 @@ void read_row(CsvTable& table, std::string_view line, std::size_t number) {
   for (;; ++found) {
     const auto comma = line.find(',');
     const std::string_view word = trimmed(line.substr(0, comma));
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data() + word.starts_with('+'), word.data() + word.size(), value);
-    if (error == std::errc::result_out_of_range)
-      table.fail(Fault::file_syntax, number, fmt::format("'{}' has no place in a double", shown(word)));
-    if (error != std::errc() || end != word.data() + word.size() || word.empty())
-      table.fail(Fault::file_syntax, number, fmt::format("a number expected, found '{}'", shown(word)));
-    if (!std::isfinite(value))
-      table.fail(Fault::file_syntax, number, fmt::format("'{}': every value must be a finite number", shown(word)));
-    if (found < table.columns.size()) table.values.push_back(value);
+    const auto value = finite_number(word);
+    if (!value && to_number(word))
+      table.fail(Fault::file_syntax, number,
+                 fmt::format("'{}': every value must be a finite number that has a place in a double", shown(word)));
+    if (!value) table.fail(Fault::file_syntax, number, fmt::format("a number expected, found '{}'", shown(word)));
+    if (found < table.columns.size()) table.values.push_back(*value);
     if (comma == std::string_view::npos) break;
     line.remove_prefix(comma + 1);
   }
@@ -89,11 +86,13 @@ int CsvTable::integer(const std::string& key, int smallest, int largest) const {
 }
 
 CsvTable read_csv(const std::filesystem::path& path) {
-  const std::string bytes = read_input_file(path);
-  std::string_view text = bytes;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  return parse_csv(read_input_file(path), path.string());
+}
+
+CsvTable parse_csv(std::string_view text, const std::string& name) {
+  text = without_byte_order_mark(text);
   CsvTable table;
-  table.name = path.string();
+  table.name = name;
   Lines lines(text);
   std::optional<std::string_view> line;
   while ((line = lines.next()) && (line->starts_with('#') || trimmed(*line).empty())) {

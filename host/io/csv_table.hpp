@@ -43,4 +43,7 @@ struct CsvTable {
 /// Error(cannot_read, too_large, file_syntax, file_truncated).
 CsvTable read_csv(const std::filesystem::path& path);
 
+/// The same of a text; `name` opens every message.
+CsvTable parse_csv(std::string_view text, const std::string& name);
+
 } // namespace cowgpu

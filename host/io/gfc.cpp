@@ -4,9 +4,10 @@
 #include "host/io/coefficient_formats.hpp"
 #include "host/io/coefficient_lines.hpp"
 #include "host/io/coefficient_metadata.hpp"
-#include "host/io/foreign_file.hpp"
+#include "host/io/length_unit.hpp"
 #include "host/io/number.hpp"
 #include "host/io/shown.hpp"
+#include "host/io/words.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
@@ -16,12 +17,6 @@
 
 namespace cowgpu {
 namespace {
-
-struct Row {
-  int l = 0, m = 0;
-  double c = 0, s = 0;
-  std::size_t line = 0;
-};
 
 constexpr std::size_t most_keywords = 1000; // those beyond are none of the format's
 
@@ -62,7 +57,9 @@ const std::string& required(const Head& head, WordLines& lines, std::string_view
 CoefficientSet read_facts(const Head& head, WordLines& lines, int& lmax) {
   const std::size_t end = lines.number;
   CoefficientSet set(0, 1);
-  if (const std::string& product = required(head, lines, "product_type"); product != "gravity_field")
+  if (!head.values.contains("product_type"))
+    set.notes.push_back("the head has no product_type; gravity_field was assumed");
+  else if (const std::string& product = required(head, lines, "product_type"); product != "gravity_field")
     lines.fail(Fault::file_format, fmt::format("product_type is '{}'; only gravity_field can be read", shown(product)));
   if (head.values.contains("norm")) {
     const std::string& norm = required(head, lines, "norm");
@@ -72,6 +69,7 @@ CoefficientSet read_facts(const Head& head, WordLines& lines, int& lmax) {
     set.convention = {norm == "unnormalized" ? Normalisation::unnormalised : Normalisation::four_pi, Phase::none};
   } else {
     set.convention = {Normalisation::four_pi, Phase::none};
+    if (!head.metadata.contains("cowgpu")) set.notes.push_back("the head has no norm; fully_normalized (4pi) was assumed");
   }
   lines.number = end;
   const bool earth = head.values.contains("earth_gravity_constant") || !head.values.contains("gravity_constant");
@@ -88,19 +86,28 @@ CoefficientSet read_facts(const Head& head, WordLines& lines, int& lmax) {
     take_metadata(head.metadata, lines.file(), set);
     set.convention = stated;
   } else {
-    set.length_unit = "m";
-    set.mass_unit = "kg";
-    set.gravitational_constant = gravitational_constant_si;
-    if (head.values.contains("modelname")) set.provenance.mesh = head.values.find("modelname")->second;
+    set.units_stated = false;
+    if (head.values.contains("modelname")) set.provenance.mesh = one_line(head.values.find("modelname")->second);
   }
   return set;
 }
 
-std::vector<Row> read_data(WordLines& lines, int lmax, bool& errors) {
-  std::vector<Row> rows;
+bool is_comment(std::string_view word) {
+  return word.starts_with('#') || word.starts_with('!') || word.starts_with('%') || same_word(word, "cmmt") ||
+         same_word(word, "comment");
+}
+
+std::vector<CoefficientRow> read_data(WordLines& lines, int lmax, CoefficientSet& set) {
+  std::vector<CoefficientRow> rows;
+  std::size_t comments = 0, first_comment = 0;
+  bool errors = false;
   while (lines.next()) {
     if (lines.words.empty()) continue;
     const std::string_view key = lines.words[0];
+    if (is_comment(key)) {
+      if (comments++ == 0) first_comment = lines.number;
+      continue;
+    }
     for (const char* moving : {"gfct", "trnd", "dot", "asin", "acos"})
       if (key == moving)
         lines.fail(
@@ -110,7 +117,7 @@ std::vector<Row> read_data(WordLines& lines, int lmax, bool& errors) {
     if (lines.words.size() < 5)
       lines.fail(Fault::file_truncated,
                  fmt::format("gfc, degree, order, C and S expected, found {} words", lines.words.size()));
-    Row row;
+    CoefficientRow row;
     row.l = lines.whole(lines.words[1], "the degree", lmax);
     row.m = lines.whole(lines.words[2], "the order", row.l);
     row.c = lines.real(lines.words[3]);
@@ -120,71 +127,32 @@ std::vector<Row> read_data(WordLines& lines, int lmax, bool& errors) {
     errors = errors || lines.words.size() > 5;
     rows.push_back(row);
   }
+  if (comments > 0)
+    set.notes.push_back(fmt::format("{} comment{} among the rows {} passed over, the first is line {}", comments,
+                                    comments == 1 ? "" : "s", comments == 1 ? "was" : "were", first_comment));
+  if (errors) set.notes.push_back("the errors of the coefficients were left out");
   return rows;
-}
-
-void fill(CoefficientSet& set, const std::vector<Row>& rows, int lmax, WordLines& lines) {
-  const std::size_t end = lines.number, count = SphereCoefficients::count(lmax);
-  std::vector<char> there; // allocated only where there are rows for it
-  if (rows.size() + 3 >= count) {
-    set.lmax = lmax;
-    set.first.assign(count, 0);
-    set.second.assign(count, 0);
-    there.assign(count, 0);
-  }
-  std::vector<std::pair<int, int>> seen; // of files with too few rows
-  for (const Row& row : rows) {
-    lines.number = row.line;
-    if (there.empty()) {
-      seen.emplace_back(row.l, row.m);
-      continue;
-    }
-    const std::size_t at = set.index(0, row.l, row.m);
-    if (there[at]) lines.fail(Fault::file_syntax, fmt::format("degree {}, order {} a second time", row.l, row.m));
-    there[at] = 1;
-    set.first[at] = row.c;
-    set.second[at] = row.s;
-  }
-  lines.number = end;
-  std::sort(seen.begin(), seen.end());
-  std::size_t next = 0;
-  bool missing = false;
-  for (int l = 0; l <= lmax; ++l)
-    for (int m = 0; m <= l; ++m) {
-      while (next < seen.size() && seen[next] < std::pair(l, m)) ++next;
-      if (there.empty() ? next < seen.size() && seen[next] == std::pair(l, m) : there[set.index(0, l, m)] != 0)
-        continue;
-      if (l > 1)
-        lines.fail(Fault::file_truncated,
-                   fmt::format("the file ends without a line 'gfc {} {} ...'; max_degree is {}", l, m, lmax));
-      missing = true;
-      if (l == 0) set.first[set.index(0, 0, 0)] = 1;
-    }
-  if (missing) set.notes.push_back("rows of degrees 0 and 1 that the file leaves out were taken as C_00 = 1 and 0");
 }
 
 } // namespace
 
-CoefficientSet read_gfc(const std::filesystem::path& path) {
-  const std::string bytes = read_input_file(path);
-  std::string_view text = bytes;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  WordLines lines(path.string(), text);
+CoefficientSet parse_gfc(std::string_view bytes, const std::string& name, std::optional<double> metres) {
+  WordLines lines(name, without_byte_order_mark(bytes));
   const Head head = read_head(lines);
+  const bool ours = head.metadata.contains("cowgpu");
   int lmax = 0;
   CoefficientSet set = read_facts(head, lines, lmax);
-  bool errors = false;
-  const std::vector<Row> rows = read_data(lines, lmax, errors);
-  lines.judge_end(head.metadata.contains("cowgpu"), set.notes);
-  fill(set, rows, lmax, lines);
-  if (errors) set.notes.push_back("the errors of the coefficients were left out");
+  std::vector<CoefficientRow> rows = read_data(lines, lmax, set);
+  lines.judge_end(ours, set.notes);
+  take_rows(rows, lmax, ours, lines, set);
+  if (!ours) settle_length_unit(set, metres, true);
   return set;
 }
 
 void write_gfc(const CoefficientSet& set, AtomicFile& file) {
   // Readers look for the keywords anywhere in a line and let later lines win, so comments stand above the head.
   std::string text = fmt::format("# cowgpu {}\n", version);
-  text += comment_lines(set, {"lmax", "normalisation", "phase", "reference_radius", "gm"});
+  text += comment_lines(set, {"coefficients_of", "lmax", "normalisation", "phase", "reference_radius", "gm"});
   for (auto at = text.find("of_head"); at != std::string::npos; at = text.find("of_head", at)) text[at + 2] = '-';
   const bool si = set.length_unit == "m" && set.mass_unit == "kg";
   text +=

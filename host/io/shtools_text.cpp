@@ -4,140 +4,305 @@
 #include "host/io/coefficient_formats.hpp"
 #include "host/io/coefficient_lines.hpp"
 #include "host/io/coefficient_metadata.hpp"
-#include "host/io/foreign_file.hpp"
+#include "host/io/length_unit.hpp"
+#include "host/io/shown.hpp"
+#include "host/io/words.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+#include <utility>
 
 namespace cowgpu {
 namespace {
 
-// What is missing below must not make us allocate.
-constexpr int largest_first_degree = 100;
+constexpr std::size_t shortest_header = 4, longest_header = 8, longest_row = 6;
 
-struct Row {
-  double c = 0, s = 0;
+// A row as it stands there. `m` is below 0 where the table has rows of negative orders.
+struct RawRow {
+  int l = 0, m = 0;
+  std::size_t words = 0;
+  double first = 0, second = 0;
+  std::size_t line = 0;
 };
 
-bool all_digits(std::string_view word) {
-  return !word.empty() && word.size() < 6 &&
-         std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+std::optional<int> integer_in(std::string_view word) {
+  const auto value = to_integer(word);
+  if (!value || std::abs(*value) > largest_file_degree) return {};
+  return int(*value);
 }
 
 bool is_comment(const WordLines& lines) {
   return lines.words.empty() || lines.words[0].starts_with('#');
 }
 
-// "r0, gm, omega, lmax": its first two numbers are no degree and order.
-bool is_header(const WordLines& lines) {
-  return lines.words.size() == 4 && !(all_digits(lines.words[0]) && all_digits(lines.words[1]));
+bool begins_as_number(std::string_view word) {
+  return word[0] == '(' || word[0] == '+' || word[0] == '-' || word[0] == '.' || (word[0] >= '0' && word[0] <= '9');
 }
 
-// Returns lmax as it stands there.
-double read_header(const WordLines& lines, CoefficientSet& set) {
-  set.kind = CoefficientKind::potential;
-  set.reference_radius = lines.real(lines.words[0]);
-  set.gm = lines.real(lines.words[1]);
-  lines.real(lines.words[2]);
-  if (!(*set.reference_radius > 0)) lines.fail(Fault::file_syntax, "r0 must be above 0");
-  return lines.real(lines.words[3]);
+bool all_numbers(const WordLines& lines) {
+  return std::all_of(lines.words.begin(), lines.words.end(),
+                     [](std::string_view word) { return WordLines::number_in(word).has_value(); });
 }
 
-Row read_row(const WordLines& lines, int l, int m) {
-  const auto& words = lines.words;
-  const int row_l = lines.whole(words[0], "the degree", largest_file_degree);
-  if (words.size() < 3)
-    lines.fail(Fault::file_truncated, fmt::format("l, m, C and S expected, found {} words", words.size()));
-  const int row_m = lines.whole(words[1], "the order", largest_file_degree);
-  if (row_l != l || row_m != m)
-    lines.fail(Fault::file_syntax, fmt::format("degree {}, order {} expected, found {}, {}", l, m, row_l, row_m));
-  if (words.size() < 4 && m > 0) lines.fail(Fault::file_truncated, "S is missing");
-  if (words.size() > 6) lines.fail(Fault::file_syntax, fmt::format("{} words, and a row has at most 6", words.size()));
-  if (words[2].starts_with('('))
-    lines.fail(Fault::file_format, "complex coefficients, which are not read; .csv and .json can hold them");
-  Row row{lines.real(words[2]), words.size() > 3 ? lines.real(words[3]) : 0};
-  if (m == 0 && row.s != 0) lines.fail(Fault::file_syntax, "S of order 0 must be 0");
-  return row;
+// A line that begins with a number, and most of its words are numbers, finite or not.
+bool mostly_numbers(const WordLines& lines) {
+  const auto count = std::count_if(lines.words.begin(), lines.words.end(), [](std::string_view word) {
+    return WordLines::number_in(word) || to_number(word);
+  });
+  return lines.words.size() >= shortest_header && WordLines::number_in(lines.words[0]) &&
+         2 * std::size_t(count) > lines.words.size();
 }
 
-void assume_defaults(CoefficientSet& set) {
-  set.convention = {Normalisation::four_pi, Phase::none};
-  set.convention_stated = false;
-  set.notes.push_back("the file does not say its convention; pyshtools' default was assumed: 4pi, without the "
-                      "Condon-Shortley phase");
-  if (set.kind != CoefficientKind::potential) return;
-  set.length_unit = "m";
-  set.mass_unit = "kg";
-  set.gravitational_constant = gravitational_constant_si;
+// A degree, an order that it can have, and more.
+bool begins_as_row(const WordLines& lines) {
+  if (lines.words.size() < 3) return false;
+  const auto l = integer_in(lines.words[0]), m = integer_in(lines.words[1]);
+  return l && m && *l >= 0 && std::abs(*m) <= *l;
 }
+
+class Table {
+public:
+  Table(std::string_view bytes, const std::string& name) : lines_(name, without_byte_order_mark(bytes)) {}
+
+  CoefficientSet read(std::optional<double> metres) {
+    while (lines_.next()) take_line();
+    if (rows_.empty()) lines_.fail(Fault::file_truncated, "the file ends before the first row l, m, C, S");
+    judge_first_row();
+    const bool ours = metadata_.contains("cowgpu");
+    lines_.judge_end(ours, set_.notes);
+    if (!header_.empty()) set_.kind = CoefficientKind::potential;
+    const std::size_t end = lines_.number;
+    std::vector<CoefficientRow> rows = plain_rows();
+    lines_.number = end;
+    int lmax = std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.l < b.l; })->l;
+    check_lmax(lmax, ours);
+    lines_.number = end;
+    take_rows(rows, lmax, ours, lines_, set_);
+    take_facts(ours, metres);
+    if (text_lines_ > 0)
+      set_.notes.push_back(fmt::format("{} line{} of text {} passed over, the first is line {}: '{}'", text_lines_,
+                                       text_lines_ == 1 ? "" : "s", text_lines_ == 1 ? "was" : "were", first_text_,
+                                       text_));
+    if (errors_) set_.notes.push_back("the errors of the coefficients were left out");
+    return std::move(set_);
+  }
+
+private:
+  void take_line() {
+    if (is_comment(lines_)) return take_comment(lines_.line, lines_.number, metadata_);
+    if (rows_.empty() ? begins_as_row(lines_) : begins_as_number(lines_.words[0])) return take_row();
+    if (rows_.empty() && all_numbers(lines_)) return take_header();
+    if (rows_.empty() && mostly_numbers(lines_))
+      for (const std::string_view word : lines_.words) lines_.real(word); // a header, and one of its values is none
+    if (metadata_.contains("cowgpu"))
+      lines_.fail(Fault::file_syntax, fmt::format("l, m, C, S expected, found '{}'", shown(lines_.line)));
+    if (text_lines_++ > 0) return;
+    first_text_ = lines_.number;
+    text_ = shown(lines_.line, 40);
+  }
+
+  void take_header() {
+    const std::size_t size = lines_.words.size();
+    if (size < shortest_header || size > longest_header)
+      lines_.fail(Fault::file_format,
+                  fmt::format("a header of {} value{}, and headers of 4 (r0, gm, omega, lmax) to 8 (r0, gm, its error, "
+                              "lmax, mmax, normalised, longitude, latitude) are known{}",
+                              size, size == 1 ? "" : "s",
+                              size == 2 ? "; coefficients of magnetic fields, which have r0 and lmax, are read without it"
+                                        : ""));
+    if (!header_.empty()) lines_.fail(Fault::file_syntax, fmt::format("a second header; line {} is one", header_line_));
+    header_line_ = lines_.number;
+    for (const std::string_view word : lines_.words) header_.push_back(lines_.real(word));
+    check_header();
+  }
+
+  void check_header() const {
+    if (!(header_[0] > 0)) lines_.fail(Fault::file_syntax, "r0 must be above 0");
+    if (!(header_[3] >= 0 && header_[3] <= largest_file_degree && header_[3] == std::floor(header_[3])))
+      lines_.fail(Fault::file_syntax, fmt::format("lmax is {}, the fourth value of the header; whole numbers from 0 to {} "
+                                                  "are possible",
+                                                  header_[3], largest_file_degree));
+    if (header_.size() > 5 && header_[5] != 1 && header_[5] != 0)
+      lines_.fail(Fault::file_format,
+                  fmt::format("the sixth value of the header, which says whether the coefficients are normalised, is {}; 1 "
+                              "(4pi) and 0 (unnormalised) are read",
+                              header_[5]));
+  }
+
+  void take_row() {
+    const auto& words = lines_.words;
+    RawRow row;
+    row.line = lines_.number;
+    row.words = words.size();
+    row.l = lines_.whole(words[0], "the degree", largest_file_degree);
+    if (words.size() < 3)
+      lines_.fail(Fault::file_truncated, fmt::format("l, m, C and S expected, found {} words", words.size()));
+    const bool below = words[1].starts_with('-') && words[1].size() > 1;
+    row.m = lines_.whole(words[1].substr(below ? 1 : 0), "the order", row.l) * (below ? -1 : 1);
+    if (words.size() > longest_row)
+      lines_.fail(Fault::file_syntax, fmt::format("{} words, and a row has at most {}", words.size(), longest_row));
+    if (words[2].starts_with('('))
+      lines_.fail(Fault::file_format, "complex coefficients, which are not read; .csv and .json can hold them");
+    row.first = lines_.real(words[2]);
+    for (std::size_t i = words.size(); i-- > 3;) row.second = lines_.real(words[i]);
+    dov_ = dov_ || row.m < 0;
+    if (rows_.empty() && words.size() >= shortest_header) {
+      for (const std::string_view word : words) doubtful_.push_back(lines_.real(word));
+    }
+    rows_.push_back(row);
+  }
+
+  // A header of whole numbers, "1 1 0 2", has the look of a row: it is one where its row comes again, and its lmax is right.
+  void judge_first_row() {
+    if (!header_.empty() || doubtful_.empty() || rows_.size() < 2) return;
+    const RawRow first = rows_.front();
+    bool again = false;
+    int lmax = 0;
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+      again = again || (rows_[i].l == first.l && rows_[i].m == first.m);
+      lmax = std::max(lmax, rows_[i].l);
+    }
+    if (!again || doubtful_[3] != lmax) return;
+    rows_.erase(rows_.begin());
+    header_ = doubtful_;
+    header_line_ = first.line;
+    check_header();
+  }
+
+  std::vector<CoefficientRow> plain_rows() {
+    std::vector<CoefficientRow> rows;
+    rows.reserve(rows_.size());
+    for (const RawRow& raw : rows_) {
+      lines_.number = raw.line;
+      if (dov_ && raw.words > 4)
+        lines_.fail(Fault::file_syntax, fmt::format("{} words; a table with rows of negative orders has degree, order, value "
+                                                    "and perhaps its error",
+                                                    raw.words));
+      if (!dov_ && raw.words < 4 && raw.m > 0)
+        lines_.fail(Fault::file_truncated, "S is missing; it may also stand in a row of order -m (degree, order, value), but "
+                                           "this file has no negative orders");
+      if (!dov_ && raw.m == 0 && raw.second != 0) lines_.fail(Fault::file_syntax, "S of order 0 must be 0");
+      errors_ = errors_ || raw.words > (dov_ ? 3U : 4U);
+      if (raw.m < 0)
+        rows.push_back({raw.l, -raw.m, 0, raw.first, raw.line});
+      else
+        rows.push_back({raw.l, raw.m, raw.first, dov_ ? 0 : raw.second, raw.line});
+    }
+    return dov_ ? paired(std::move(rows)) : rows;
+  }
+
+  // C and S of each degree and order, which stand in rows of their own, in one.
+  std::vector<CoefficientRow> paired(std::vector<CoefficientRow> halves) {
+    std::vector<std::size_t> order(halves.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto key = [&](std::size_t i) { return std::tuple(halves[i].l, halves[i].m, rows_[i].m < 0, halves[i].line); };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+    std::vector<CoefficientRow> rows;
+    std::size_t alone = 0;
+    for (std::size_t at = 0; at < order.size(); ++at) {
+      const std::size_t i = order[at];
+      CoefficientRow row = halves[i];
+      const bool sine = rows_[i].m < 0;
+      bool whole = row.m == 0;
+      if (!sine && row.m > 0 && at + 1 < order.size()) {
+        const std::size_t next = order[at + 1];
+        whole = halves[next].l == row.l && halves[next].m == row.m && rows_[next].m < 0;
+        if (whole) {
+          row.s = halves[next].s;
+          ++at;
+        }
+      }
+      alone += !whole;
+      rows.push_back(row);
+    }
+    set_.notes.push_back("the rows are degree, order and value; those of order -m were taken as S");
+    if (alone > 0)
+      set_.notes.push_back(fmt::format("{} value{} C or S without the other, which {} taken as 0", alone,
+                                       alone == 1 ? "" : "s", alone == 1 ? "was" : "were"));
+    return rows;
+  }
+
+  void check_lmax(int lmax, bool ours) {
+    const auto differs = [&](double stated) {
+      return stated > lmax ? Fault::file_truncated : Fault::file_syntax;
+    };
+    if (!header_.empty() && header_[3] != lmax)
+      lines_.fail(differs(header_[3]), fmt::format("the rows end at degree {}, and the header, line {}, says lmax {}", lmax,
+                                                   header_line_, header_[3]));
+    if (!ours || !metadata_.contains("lmax")) return;
+    lines_.number = metadata_["lmax"].line;
+    const int stated = lines_.whole(metadata_["lmax"].text, "lmax", largest_file_degree);
+    if (stated != lmax)
+      lines_.fail(differs(stated), fmt::format("the rows end at degree {}, and lmax is {}", lmax, stated));
+  }
+
+  // Convention, body and units.
+  void take_facts(bool ours, std::optional<double> metres) {
+    if (!header_.empty()) {
+      set_.reference_radius = header_[0];
+      set_.gm = header_[1];
+    }
+    if (ours) metadata_.erase("form");
+    if (ours && header_.empty() && metadata_.contains("kind"))
+      lines_.fail(Fault::file_truncated,
+                  "the file says that it is of a potential and has no line r0, gm, omega, lmax");
+    if (ours && take_metadata(metadata_, lines_.file(), set_)) return;
+    const bool normalised = header_.size() < 6 || header_[5] == 1;
+    set_.convention = {normalised ? Normalisation::four_pi : Normalisation::unnormalised, Phase::none};
+    set_.convention_stated = false;
+    if (header_.size() > 5)
+      set_.notes.push_back(fmt::format("the header says that the coefficients are {}normalised: {}, and without the "
+                                       "Condon-Shortley phase, as in gravity tables of the PDS",
+                                       normalised ? "" : "un", name(set_.convention.normalisation)));
+    else
+      set_.notes.push_back("the file does not say its convention; pyshtools' default was assumed: 4pi, without the "
+                           "Condon-Shortley phase");
+    if (set_.kind != CoefficientKind::potential) return;
+    if (set_.first[0] == 0) {
+      set_.first[0] = 1;
+      set_.notes.push_back("C_00 is 0 in the file and was taken as 1: the body's mass is in GM");
+    }
+    if ((header_.size() > 6 && header_[6] != 0) || (header_.size() > 7 && header_[7] != 0))
+      set_.notes.push_back(fmt::format("the header's reference longitude and latitude, {} and {} degrees, were left out",
+                                       header_[6], header_.size() > 7 ? header_[7] : 0));
+    set_.units_stated = false;
+    settle_length_unit(set_, metres, false);
+  }
+
+  WordLines lines_;
+  CoefficientSet set_{0, 1};
+  Metadata metadata_;
+  std::vector<RawRow> rows_;
+  std::vector<double> header_, doubtful_;
+  std::size_t header_line_ = 0, text_lines_ = 0, first_text_ = 0;
+  std::string text_;
+  bool errors_ = false, dov_ = false;
+};
 
 } // namespace
 
-CoefficientSet read_shtools_text(const std::filesystem::path& path) {
-  const std::string bytes = read_input_file(path);
-  std::string_view text = bytes;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  WordLines lines(path.string(), text);
-  CoefficientSet set(0, 1);
-  Metadata metadata;
-  std::vector<Row> rows; // by l, then m
-  int first_degree = 0, l = -1, m = 0;
-  bool header = false, errors = false;
-  double header_lmax = -1;
-  while (lines.next()) {
-    if (is_comment(lines)) {
-      take_comment(lines.line, lines.number, metadata);
-      continue;
-    }
-    if (l < 0 && !header && is_header(lines)) {
-      header = true;
-      header_lmax = read_header(lines, set);
-      continue;
-    }
-    if (l < 0) l = first_degree = lines.whole(lines.words[0], "the first degree", largest_first_degree);
-    rows.push_back(read_row(lines, l, m));
-    errors = errors || lines.words.size() > 4;
-    if (++m > l) {
-      ++l;
-      m = 0;
-    }
+CoefficientSet parse_shtools_text(std::string_view bytes, const std::string& name, std::optional<double> metres) {
+  return Table(bytes, name).read(metres);
+}
+
+bool looks_like_shtools_text(std::string_view bytes) {
+  WordLines lines("", without_byte_order_mark(bytes));
+  std::size_t numbers = 0, rows = 0;
+  std::set<std::pair<int, int>> seen;
+  constexpr std::size_t enough = 200, most_lines = 10000;
+  while (numbers < enough && lines.number < most_lines && lines.next()) {
+    if (is_comment(lines) || !all_numbers(lines)) continue;
+    ++numbers;
+    if (!begins_as_row(lines) || lines.words.size() > longest_row) continue;
+    ++rows;
+    seen.emplace(*integer_in(lines.words[0]), *integer_in(lines.words[1]));
   }
-  if (rows.empty()) lines.fail(Fault::file_truncated, "the file ends before the first row l, m, C, S");
-  if (m > 0) lines.fail(Fault::file_truncated, fmt::format("the file ends before degree {}, order {}", l, m));
-  set.lmax = l - 1;
-  if (header && header_lmax != set.lmax)
-    lines.fail(
-        header_lmax > set.lmax ? Fault::file_truncated : Fault::file_syntax,
-        fmt::format("the rows end at degree {}, and the line r0, gm, omega, lmax says {}", set.lmax, header_lmax));
-  const bool ours = metadata.contains("cowgpu");
-  lines.judge_end(ours, set.notes);
-  if (ours && metadata.contains("lmax")) {
-    lines.number = metadata["lmax"].line;
-    const int lmax = lines.whole(metadata["lmax"].text, "lmax", largest_file_degree);
-    if (lmax != set.lmax)
-      lines.fail(Fault::file_truncated, fmt::format("the rows end at degree {}, and lmax is {}", set.lmax, lmax));
-  }
-  set.first.assign(SphereCoefficients::count(set.lmax), 0);
-  set.second = set.first;
-  std::size_t at = 0;
-  for (int degree = first_degree; degree <= set.lmax; ++degree)
-    for (int order = 0; order <= degree; ++order, ++at) {
-      set.first[set.index(0, degree, order)] = rows[at].c;
-      set.second[set.index(0, degree, order)] = rows[at].s;
-    }
-  if (ours) metadata.erase("form");
-  if (ours && !header && metadata.contains("kind"))
-    lines.fail(Fault::file_truncated, "the file says that it is of a potential and has no line r0, gm, omega, lmax");
-  if (!ours || !take_metadata(metadata, path.string(), set)) assume_defaults(set);
-  if (first_degree > 0) {
-    if (set.kind == CoefficientKind::potential) set.first[0] = 1;
-    set.notes.push_back(fmt::format("degrees below {}, which the file leaves out, were taken as 0{}", first_degree,
-                                    set.kind == CoefficientKind::potential ? ", and C_00 as 1" : ""));
-  }
-  if (errors) set.notes.push_back("the errors of the coefficients were left out");
-  return set;
+  return 2 * rows > numbers && 10 * (rows - seen.size()) <= rows + 9;
 }
 
 void write_shtools_text(const CoefficientSet& set, AtomicFile& file) {

@@ -25,6 +25,11 @@ std::string mass_unit(const Body& body) {
   return body.placement.metric ? "kg" : std::string(mesh_mass_unit);
 }
 
+double second_moment_of(const ExpandResult& result) {
+  const auto& moments = result.tensors.second_moment;
+  return moments(0, 0) + moments(1, 1) + moments(2, 2);
+}
+
 CoefficientSet mass_set(const ExpandResult& result) {
   const Coefficients& q = result.mass;
   CoefficientSet set(q.lmax, 1);
@@ -40,7 +45,7 @@ CoefficientSet mass_set(const ExpandResult& result) {
   set.origin = q.origin;
   set.origin_kind = result.body.origin_kind;
   if (result.body.parts.empty()) set.density = q.density;
-  set.second_moment = result.tensors.second_moment.trace();
+  set.second_moment = second_moment_of(result);
   set.length_unit = length_unit(result.body);
   set.mass_unit = mass_unit(result.body);
   set.provenance = provenance_of(result);

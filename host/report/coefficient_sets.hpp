@@ -9,6 +9,10 @@ namespace cowgpu {
 /// The mass multipoles, complex, orthonormal, with the Condon-Shortley phase.
 CoefficientSet mass_set(const ExpandResult& result);
 
+/// Integral of density r^2 about the origin: xx + yy + zz of the tensor that the JSON has, added in this order, so that every
+/// file of one result says the same double.
+double second_moment_of(const ExpandResult& result);
+
 /// The six fields of a surface, in the same convention.
 CoefficientSet surface_set(const ExpandResult& result, const SurfaceResult& surface);
 

@@ -29,7 +29,7 @@ std::string mass_comments(const ExpandResult& result) {
   text += "\n# density ";
   append_number(text, q.density);
   text += "\n# second_moment ";
-  append_number(text, result.tensors.second_moment.trace());
+  append_number(text, second_moment_of(result));
   text += "\n";
   for (const Part& part : result.body.parts) {
     text += fmt::format("# part {}, sha256 {}: adds the density ", one_line(part.surface.mesh().name),

@@ -4,5 +4,8 @@
 using namespace cowgpu;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return fuzz::run_on_file(data, size, ".json", [](const std::string& path) { read_json_coefficients(path, ""); });
+  return fuzz::run([&] {
+    const std::string_view bytes = fuzz::bytes_of(data, size);
+    parse_json_coefficients(std::string(bytes), "input.json", "");
+  });
 }

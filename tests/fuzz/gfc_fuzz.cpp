@@ -4,5 +4,8 @@
 using namespace cowgpu;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return fuzz::run_on_file(data, size, ".gfc", [](const std::string& path) { read_gfc(path); });
+  return fuzz::run([&] {
+    const std::string_view bytes = fuzz::bytes_of(data, size);
+    parse_gfc(bytes, "input.gfc");
+  });
 }

@@ -4,5 +4,9 @@
 using namespace cowgpu;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return fuzz::run_on_file(data, size, ".sh", [](const std::string& path) { read_shtools_text(path); });
+  return fuzz::run([&] {
+    const std::string_view bytes = fuzz::bytes_of(data, size);
+    looks_like_shtools_text(bytes);
+    parse_shtools_text(bytes, "input.sh");
+  });
 }

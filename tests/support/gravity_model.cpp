@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -43,6 +44,39 @@ GravityModel read_gravity_model(const std::string& path) {
   if (head || model.head.at("product_type") != "gravity_field" || model.head.at("norm") != "fully_normalized" ||
       rows != std::size_t(model.lmax + 1) * std::size_t(model.lmax + 2) / 2)
     throw std::runtime_error(path + " is no complete gravity model");
+  return model;
+}
+
+GravityModel read_gravity_table(const std::string& path, double metres) {
+  std::ifstream file(path);
+  GravityModel model;
+  std::string line;
+  const auto numbers = [&line] {
+    for (char& c : line)
+      if (c == ',') c = ' ';
+    std::istringstream words(line);
+    return std::vector<double>(std::istream_iterator<double>(words), std::istream_iterator<double>());
+  };
+  std::getline(file, line);
+  const std::vector<double> head = numbers();
+  if (head.size() < 4) throw std::runtime_error(path + " is no gravity table");
+  std::ostringstream radius, gm;
+  radius.precision(17);
+  gm.precision(17);
+  radius << head[0] * metres;
+  gm << head[1] * metres * metres * metres;
+  model.head = {{"radius", radius.str()}, {"earth_gravity_constant", gm.str()}};
+  model.lmax = int(head[3]);
+  for (int l = 0; l <= model.lmax; ++l) model.c.emplace_back(l + 1, l < 2 ? double(l == 0) : NAN);
+  model.s = model.c;
+  model.s[0][0] = 0;
+  while (std::getline(file, line)) {
+    const std::vector<double> row = numbers();
+    if (row.empty()) continue;
+    if (row.size() < 4) throw std::runtime_error(path + " has a short row");
+    model.c.at(std::size_t(row[0])).at(std::size_t(row[1])) = row[2];
+    model.s.at(std::size_t(row[0])).at(std::size_t(row[1])) = row[3];
+  }
   return model;
 }
 

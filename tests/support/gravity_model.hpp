@@ -1,4 +1,4 @@
-// A reader of ICGEM files for the tests, written from the format's description and sharing no code with the program.
+// Readers of gravity models for the tests, written from the formats' descriptions and sharing no code with the program.
 #pragma once
 
 #include <map>
@@ -20,5 +20,9 @@ struct GravityModel {
 
 /// Throws std::runtime_error where the file is none of a static, fully normalised model with all its rows.
 GravityModel read_gravity_model(const std::string& path);
+
+/// The same of a gravity table of the PDS (SHADR) or of SHTOOLS: a first line of 4 to 8 values, then rows l, m, C, S and errors,
+/// 4 pi normalised, C_00 = 1 and degree 1 zero where they are left out; lengths are `metres` long. Throws std::runtime_error.
+GravityModel read_gravity_table(const std::string& path, double metres);
 
 } // namespace cowgpu::test
