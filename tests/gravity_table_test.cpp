@@ -256,7 +256,9 @@ TEST_CASE("every command that reads coefficients takes a table in kilometres", "
   CHECK_THAT(out({"tensors", km, "--length-unit", "km"}), Contains("6.4169"));
   CHECK_THAT(out({"transform", "synthesise", km, folder / "m.nc", "--length-unit", "km", "--device", "cpu"}),
              Contains("as --length-unit says"));
-  out({"tides", km, "--length-unit", "km", "--orbit", "400000km"});
+  const ProgramRun tides = run_program({"tides", km, "--length-unit", "km", "--orbit", "400000km"});
+  CHECK(tides.exit_code == 3); // no gravity field says the second moment
+  CHECK_THAT(tides.err, Contains("second moment") && !Contains("unit"));
   const ProgramRun metric = run_program({"convert", folder / "a.gfc", folder / "b.sh", "--length-unit", "km"});
   CHECK(metric.exit_code == 2);
   CHECK_THAT(metric.err, Contains("is in metres already"));

@@ -24,7 +24,7 @@ bool is_json(std::string_view text) {
   return WordScanner(text, '\0').word().starts_with('{');
 }
 
-// "l,m" and more, under comments of which one is ours.
+// A line of names under comments of which one is ours; the reader says which names it wants.
 bool is_table_of_columns(std::string_view text) {
   WordLines lines("", text);
   bool named = false;
@@ -32,10 +32,10 @@ bool is_table_of_columns(std::string_view text) {
     if (lines.words.empty()) continue;
     if (lines.words[0].starts_with('#')) {
       const std::string_view word = lines.words[0] == "#" && lines.words.size() > 1 ? lines.words[1] : lines.words[0].substr(1);
-      named = named || word == "lmax" || word == "cowgpu";
+      named = named || word == "lmax" || word == "cowgpu" || word == "normalisation" || word == "phase";
       continue;
     }
-    return named && lines.words.size() > 2 && lines.words[0] == "l" && lines.words[1] == "m";
+    return named && lines.words.size() > 2 && !WordLines::number_in(lines.words[0]);
   }
   return false;
 }
@@ -48,15 +48,6 @@ bool is_gravity_model(std::string_view text) {
     if (lines.words[0] == "gfc" && lines.words.size() > 4 && WordLines::number_in(lines.words[3])) return true;
   }
   return false;
-}
-
-// Rows of whole numbers also stand in meshes, which say what they are. A line "l m C S" above a table is no OBJ file.
-bool is_mesh(std::string_view bytes) {
-  try {
-    return mesh_format_of(bytes, "").name != "OBJ";
-  } catch (const Error&) {
-    return false;
-  }
 }
 
 // Of a regular file that can be opened, by its beginning.
@@ -72,6 +63,15 @@ std::optional<CoefficientFormat> format_of_file(const std::filesystem::path& pat
 
 } // namespace
 
+// A line "l m C S" above a table is no OBJ file.
+bool holds_mesh(std::string_view bytes) {
+  try {
+    return mesh_format_of(bytes, "").name != "OBJ";
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::optional<CoefficientFormat> coefficient_format_in(std::string_view bytes) {
   if (is_netcdf(bytes)) return CoefficientFormat::netcdf;
   const std::string_view text = without_byte_order_mark(bytes.substr(0, beginning));
@@ -82,7 +82,7 @@ std::optional<CoefficientFormat> coefficient_format_in(std::string_view bytes) {
   }
   if (is_table_of_columns(text)) return CoefficientFormat::csv;
   if (is_gravity_model(text)) return CoefficientFormat::gfc;
-  if (looks_like_shtools_text(text) && !is_mesh(bytes)) return CoefficientFormat::shtools;
+  if (looks_like_shtools_text(text) && !holds_mesh(bytes)) return CoefficientFormat::shtools;
   return {};
 }
 

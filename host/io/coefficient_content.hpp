@@ -10,9 +10,13 @@
 namespace cowgpu {
 
 /// By the first bytes, whatever the file's name: "HDF" or "CDF" (netCDF); a JSON object with a schema of cowgpu; a line
-/// end_of_head or one "gfc l m C S" (ICGEM); a comment "# lmax" or "# cowgpu" with the columns l,m,... below (CSV); rows of a
+/// end_of_head or one "gfc l m C S" (ICGEM); a comment as ours ("# lmax", "# normalisation" ...) with a line of names below
+/// (CSV); rows of a
 /// table of coefficients (looks_like_shtools_text()). Nothing for other files, meshes among them.
 std::optional<CoefficientFormat> coefficient_format_in(std::string_view bytes);
+
+/// Whether the bytes say that they are a mesh (OFF, PLY, STL, glTF), rows of whole numbers or not. Never throws.
+bool holds_mesh(std::string_view bytes);
 
 /// Whether a file is JSON or CSV, by its content or, where that says nothing, its suffix: of the formats that `cowgpu expand`
 /// writes those that can hold several expansions, from which --of chooses. Never throws.

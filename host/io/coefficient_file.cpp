@@ -26,6 +26,8 @@ CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std
   std::string bytes = read_input_file(path);
   const std::string name = path.string();
   const auto held = coefficient_format_in(bytes), named = coefficient_format_named(path);
+  if (!held && named == CoefficientFormat::shtools && holds_mesh(bytes))
+    throw Error(Fault::file_format, name + ": this is a mesh and no table of coefficients");
   if (!held && !named)
     throw Error(bytes.empty() ? Fault::file_truncated : Fault::file_format,
                 bytes.empty() ? name + ": the file is empty"
