@@ -60,9 +60,9 @@ struct CoefficientSet {
   /// Radius of the sphere about `origin` that holds the body, in the length unit: outside it the series is the potential. It
   /// says what R, which any number may be, does not. Empty: not known, as of files of other programs.
   std::optional<double> brillouin_radius;
-  std::optional<Vec3> origin;             ///< of multipoles, potentials and surfaces, in mesh coordinates
-  std::string origin_kind;                ///< "centre of mass", "mesh", "given", or empty
-  std::string length_unit, mass_unit;     ///< "m", "kg"; the two above; empty: not known
+  std::optional<Vec3> origin;         ///< of multipoles, potentials and surfaces, in mesh coordinates
+  std::string origin_kind;            ///< "centre of mass", "mesh", "given", or empty
+  std::string length_unit, mass_unit; ///< "m", "kg"; the two above; empty: not known
   std::optional<double> density, mass;
   std::optional<double> second_moment;          ///< integral of density r^2 about `origin`, in the units above
   std::optional<double> gravitational_constant; ///< G that went into gm, in the units above and seconds

@@ -121,9 +121,9 @@ void gauss_legendre(SphereGrid& grid) {
 std::vector<Real> cosines(int n) {
   std::vector<Real> c(std::size_t(n) + 1);
   for (int i = 0; i <= n; ++i) // from the nearest of pole and equator, so that zeros are zeros and signs are symmetric
-    c[std::size_t(i)] = 4 * i <= n       ? std::cos(pi * i / n)
+    c[std::size_t(i)] = 4 * i <= n      ? std::cos(pi * i / n)
                         : 4 * i < 3 * n ? std::sin(pi * (n - 2 * i) / (2 * n))
-                                         : -std::cos(pi * (n - i) / n);
+                                        : -std::cos(pi * (n - i) / n);
   return c;
 }
 
@@ -176,7 +176,8 @@ void fejer(SphereGrid& grid) {
   parallel_for(0, std::size_t((n + 1) / 2), [&](std::size_t i, unsigned) {
     Real sum = 0;
     for (int k = n / 2; k >= 1; --k) {
-      std::size_t at = std::size_t(2) * std::size_t(k) * (2 * i + 1) % period; // 2 k theta_i in steps of pi / 2n, folded
+      std::size_t at =
+          std::size_t(2) * std::size_t(k) * (2 * i + 1) % period; // 2 k theta_i in steps of pi / 2n, folded
       if (at > period / 2) at = period - at;
       sum += 2 * c[at] / (4 * Real(k) * Real(k) - 1);
     }

@@ -19,7 +19,8 @@ namespace {
 void turn(const SphereGrid& grid, int lmax, int fields, int sign, std::span<std::complex<double>> coefficients) {
   const std::size_t count = SphereCoefficients::count(lmax);
   for (int m = 1; m <= lmax; ++m) {
-    const long double steps = std::fmod(static_cast<long double>(m) * static_cast<long double>(grid.shift), grid.ring_length);
+    const long double steps =
+        std::fmod(static_cast<long double>(m) * static_cast<long double>(grid.shift), grid.ring_length);
     const long double angle = 2 * std::numbers::pi_v<long double> * steps / grid.ring_length;
     const std::complex<double> factor(double(std::cos(angle)), sign * double(std::sin(angle)));
     for (std::size_t f = 0; f < std::size_t(fields); ++f) {

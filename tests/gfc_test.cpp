@@ -169,7 +169,8 @@ TEST_CASE("a .gfc file reads back to the last bit, with everything it says", "[g
   }
 }
 
-TEST_CASE("rows that a gravity model leaves out are 0, and a note counts them; one that was cut off is refused", "[gfc]") {
+TEST_CASE("rows that a gravity model leaves out are 0, and a note counts them; one that was cut off is refused",
+          "[gfc]") {
   const std::string bytes = read_text(std::string(COWGPU_CORPUS) + "/coefficients/gfc--rows-left-out.gfc");
   const CoefficientSet set = parse_gfc(bytes, "m.gfc");
   CHECK(set.lmax == 3);
@@ -177,11 +178,11 @@ TEST_CASE("rows that a gravity model leaves out are 0, and a note counts them; o
   CHECK(set.first[set.index(0, 2, 0)] == -4.84e-4);
   CHECK(set.first[set.index(0, 3, 0)] == 9.57e-7);
   for (int l = 1; l <= 3; ++l)
-    for (int m = 1; m <= l; ++m)
-      CHECK((set.first[set.index(0, l, m)] == 0 && set.second[set.index(0, l, m)] == 0));
+    for (int m = 1; m <= l; ++m) CHECK((set.first[set.index(0, l, m)] == 0 && set.second[set.index(0, l, m)] == 0));
   std::string notes;
   for (const std::string& note : set.notes) notes += note + "\n";
-  CHECK_THAT(notes, Contains("5 rows that the file leaves out, the first of degree 2, order 1") && Contains("degree 1 that"));
+  CHECK_THAT(notes,
+             Contains("5 rows that the file leaves out, the first of degree 2, order 1") && Contains("degree 1 that"));
   // Without its last row there is none of degree 3.
   CHECK_THAT(fault_of([&] { parse_gfc(bytes.substr(0, bytes.find("gfc    3")), "m.gfc"); }),
              StartsWith("file-truncated: m.gfc:") && Contains("its largest degree is 3"));

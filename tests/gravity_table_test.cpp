@@ -85,8 +85,7 @@ TEST_CASE("the tables of the cases hold their field, whatever stands around it",
   const CoefficientSet dov = read_coefficient_set(folder_of_cases + "shadr--degree-order-value.sh");
   check_field(dov);
   CHECK_THAT(notes_of(dov), Contains("order -m"));
-  const std::string two =
-      fault_of([&] { read_coefficient_set(folder_of_cases + "shadr--two-value-header.sh"); });
+  const std::string two = fault_of([&] { read_coefficient_set(folder_of_cases + "shadr--two-value-header.sh"); });
   CHECK_THAT(two, StartsWith("file-format: ") && Contains(":1: a header of 2 values") && Contains("of 4 ") &&
                       Contains("to 8 "));
 }
@@ -111,7 +110,8 @@ TEST_CASE("headers of four to eight values, rows from degree 2 on, in any order"
   CHECK(other.first[0] == 1);
   CHECK_THAT(notes_of(other), Contains("longitude and latitude, 10 and 0") && Contains("C_00 is 0"));
   // Errors of rows of negative orders; one without its C.
-  const CoefficientSet dov = parse("2 -2 -1.4e-6 1\n2 0 -4.84e-4 1\n2 1 -2e-10 1\n2 -1 1.4e-9 1\n0 0 1 1\n2 2 2.4e-6 1\n");
+  const CoefficientSet dov =
+      parse("2 -2 -1.4e-6 1\n2 0 -4.84e-4 1\n2 1 -2e-10 1\n2 -1 1.4e-9 1\n0 0 1 1\n2 2 2.4e-6 1\n");
   check_field(dov);
   CHECK_THAT(notes_of(parse("0 0 1\n1 -1 3\n1 0 0\n")), Contains("1 value C or S without the other"));
 }
@@ -119,7 +119,8 @@ TEST_CASE("headers of four to eight values, rows from degree 2 on, in any order"
 TEST_CASE("tables that are wrong are refused by line, and say what is known", "[gravity-table]") {
   const std::string header = "1738.0, 4902.8, 1e-4, 2\n";
   CHECK_THAT(fault("6371200.0\n" + rows), StartsWith("file-format: t.tab:1: a header of 1 value,"));
-  CHECK_THAT(fault("6371200.0, 2\n" + rows), StartsWith("file-format: t.tab:1: a header of 2 values,") && Contains("magnetic"));
+  CHECK_THAT(fault("6371200.0, 2\n" + rows),
+             StartsWith("file-format: t.tab:1: a header of 2 values,") && Contains("magnetic"));
   CHECK_THAT(fault("1738.0 4902.8 2\n" + rows), StartsWith("file-format: t.tab:1: a header of 3 values,"));
   CHECK_THAT(fault("1738.0 1 1 2 2 1 0 0 0\n" + rows), StartsWith("file-format: t.tab:1: a header of 9 values,"));
   CHECK_THAT(fault(header + header + rows), StartsWith("file-syntax: t.tab:2: a second header; line 1"));
@@ -130,7 +131,8 @@ TEST_CASE("tables that are wrong are refused by line, and say what is known", "[
   CHECK_THAT(fault("1738.0, 1, 1, 2, 2, 3\n" + rows), StartsWith("file-format: t.tab:1: the sixth value"));
   CHECK_THAT(fault("1738.0, 1, 1, 3\n" + rows), StartsWith("file-truncated: t.tab:4: the rows end at degree 2"));
   CHECK_THAT(fault("1738.0, 1, 1, 1\n" + rows), StartsWith("file-syntax: t.tab:4: the rows end at degree 2"));
-  CHECK_THAT(fault(header + rows.substr(0, rows.find("2, 2"))), StartsWith("file-truncated: ") && Contains("degree 2, order 2"));
+  CHECK_THAT(fault(header + rows.substr(0, rows.find("2, 2"))),
+             StartsWith("file-truncated: ") && Contains("degree 2, order 2"));
   CHECK_THAT(fault(rows + "2, 0, 1, 0\n"), StartsWith("file-syntax: t.tab:4: degree 2, order 0 a second time; line 1"));
   CHECK_THAT(fault(rows + "1, 2, 1, 0\n"), StartsWith("file-syntax: t.tab:4: the order is '2'"));
   CHECK_THAT(fault("1 0 1\n1 1 2\n"), StartsWith("file-truncated: t.tab:2: S is missing") && Contains("order -m"));
@@ -144,7 +146,8 @@ TEST_CASE("tables that are wrong are refused by line, and say what is known", "[
 TEST_CASE("kilometres are told by R and GM of known bodies, or by the user; metres are assumed with a note",
           "[gravity-table][length-unit]") {
   const std::string mars = "3396.0, 42828.37, 7e-5, 2\n" + rows, toy = "3396.0, 52828.37, 7e-5, 2\n" + rows;
-  const CoefficientSet guessed = parse(mars), metres = parse(mars, 1.0), kilometres = parse(toy, 1000.0), assumed = parse(toy);
+  const CoefficientSet guessed = parse(mars), metres = parse(mars, 1.0), kilometres = parse(toy, 1000.0),
+                       assumed = parse(toy);
   CHECK(guessed.reference_radius == 3396e3);
   CHECK(guessed.gm == Approx(42828.37e9).epsilon(1e-15));
   CHECK_FALSE(guessed.units_stated);
@@ -154,7 +157,8 @@ TEST_CASE("kilometres are told by R and GM of known bodies, or by the user; metr
   CHECK(kilometres.reference_radius == 3396e3);
   CHECK(assumed.reference_radius == 3396.0);
   CHECK_THAT(notes_of(assumed), Contains("metres assumed") && Contains("--length-unit km"));
-  CHECK_THAT(notes_of(parse("3396000.0, 42828.37e9, 0, 2\n" + rows)), Contains("metres assumed, in which R and GM are those of Mars"));
+  CHECK_THAT(notes_of(parse("3396000.0, 42828.37e9, 0, 2\n" + rows)),
+             Contains("metres assumed, in which R and GM are those of Mars"));
   for (const CoefficientSet* set : {&guessed, &metres, &kilometres, &assumed}) {
     CHECK(set->length_unit == "m");
     CHECK(set->gravitational_constant == gravitational_constant_si);
@@ -183,7 +187,8 @@ TEST_CASE("lengths in a mesh's unit become metres in every member", "[length-uni
   CHECK(si.mass == 2000.0);
   CHECK(si.second_moment == 3e5);
   CHECK((si.length_unit == "m" && si.mass_unit == "kg"));
-  CHECK_THAT(fault_of([&] { state_length_unit(si, 10, "f"); }), StartsWith("bad-argument: --length-unit: f is in metres"));
+  CHECK_THAT(fault_of([&] { state_length_unit(si, 10, "f"); }),
+             StartsWith("bad-argument: --length-unit: f is in metres"));
   set.kind = CoefficientKind::potential;
   set.gm = 2;
   set.gravitational_constant = 1;

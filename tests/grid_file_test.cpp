@@ -92,9 +92,8 @@ Foreign pyshtools(const GridFile& grid, bool extend) {
 
 TEST_CASE("grids of every kind read back the same from netCDF and CSV", "[grid-file]") {
   const TemporaryFolder folder;
-  for (const GridKind kind :
-       {GridKind::gauss_legendre, GridKind::clenshaw_curtis, GridKind::driscoll_healy, GridKind::driscoll_healy_square,
-        GridKind::fejer})
+  for (const GridKind kind : {GridKind::gauss_legendre, GridKind::clenshaw_curtis, GridKind::driscoll_healy,
+                              GridKind::driscoll_healy_square, GridKind::fejer})
     for (const int lmax : {0, 1, 2, 7, 12})
       for (const int fields : {1, 3})
         for (const char* suffix : {"g.nc", "g.csv"}) {

@@ -126,8 +126,8 @@ TEST_CASE("the grids of the cases give their coefficients on both paths", "[grid
                            "grid--longitudes-from-minus-180.nc", "grid--time-dimension-of-one.nc"})
     for (const char* device : {"cpu", "auto"}) {
       const ProgramRun run =
-          run_program({"transform", "analyse", std::string(COWGPU_CORPUS) + "/grids/" + name, folder / "c.csv", "--grid",
-                       "dh", "--lmax", "3", "--normalisation", "4pi", "--phase", "none", "--device", device});
+          run_program({"transform", "analyse", std::string(COWGPU_CORPUS) + "/grids/" + name, folder / "c.csv",
+                       "--grid", "dh", "--lmax", "3", "--normalisation", "4pi", "--phase", "none", "--device", device});
       INFO(name << "\n" << run.err << run.out);
       REQUIRE(run.exit_code == 0);
       CHECK(coefficient_error(read_coefficient_set(folder / "c.csv")) < 2e-14);
@@ -183,7 +183,8 @@ TEST_CASE("longitudes may begin anywhere and go either way, with the first repea
              StartsWith("file-syntax: ") && Contains("variable lon, value 3"));
 }
 
-TEST_CASE("a grid whose rings begin beside longitude 0 gives its coefficients and is written as it is", "[grid-file][transform]") {
+TEST_CASE("a grid whose rings begin beside longitude 0 gives its coefficients and is written as it is",
+          "[grid-file][transform]") {
   const TemporaryFolder folder;
   const std::string path = folder / "f.nc";
   for (const double first : {-11.25, 5.0}) {

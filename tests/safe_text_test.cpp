@@ -25,21 +25,23 @@ const std::string attack = "\x1b]0;PWNED\x07\x1b[31mRED\r\nX\xc2\x9b"
 
 // Neither C0 but line feeds and tabs, nor DEL, nor C1, nor bytes that are no UTF-8, nor marks of direction.
 bool safe_for_terminals(const std::string& text) {
-  return terminal_text(text) == text && text.find('\x1b') == std::string::npos && text.find('\r') == std::string::npos &&
-         text.find("\xc2\x9b") == std::string::npos && text.find('\x7f') == std::string::npos;
+  return terminal_text(text) == text && text.find('\x1b') == std::string::npos &&
+         text.find('\r') == std::string::npos && text.find("\xc2\x9b") == std::string::npos &&
+         text.find('\x7f') == std::string::npos;
 }
 
 } // namespace
 
 TEST_CASE("text for one line keeps what is written and loses what a terminal obeys", "[safe-text]") {
   CHECK(one_line("plain 100 % ~") == "plain 100 % ~");
-  CHECK(one_line("K\xc3\xbchlschrank \xe2\x82\xac \xf0\x9f\x90\x84") == "K\xc3\xbchlschrank \xe2\x82\xac \xf0\x9f\x90\x84");
+  CHECK(one_line("K\xc3\xbchlschrank \xe2\x82\xac \xf0\x9f\x90\x84") ==
+        "K\xc3\xbchlschrank \xe2\x82\xac \xf0\x9f\x90\x84");
   CHECK(one_line("a\r\nb\tc") == "a  b c");
   CHECK(one_line(attack) == " ]0;PWNED  [31mRED  X 31m  ? ? ???");
   CHECK(one_line(std::string("a\0b", 3)) == "a b");
-  CHECK(one_line("\xc3") == "?");                 // cut off
+  CHECK(one_line("\xc3") == "?");                     // cut off
   CHECK(one_line("\xc0\x9b\xe0\x82\x9b") == "?????"); // C1 in more bytes than it takes
-  CHECK(one_line("\xf4\x90\x80\x80") == "????");  // beyond Unicode
+  CHECK(one_line("\xf4\x90\x80\x80") == "????");      // beyond Unicode
   CHECK(terminal_text("a\n\tb\r\n\x1b[1m") == "a\n\tb \n [1m");
 }
 
@@ -55,7 +57,8 @@ TEST_CASE("a number is all of its word, decimal and finite", "[safe-text]") {
   CHECK(read_number("-1.5e-3") == -1.5e-3);
   CHECK(read_number("+2") == 2);
   CHECK(read_number(".5") == 0.5);
-  for (const char* word : {"", "nan", "inf", "-inf", "NAN", "0x10", "1,5", "1.5x", " 1", "1 ", "1e999", "abc", "--1", "+-1"})
+  for (const char* word :
+       {"", "nan", "inf", "-inf", "NAN", "0x10", "1,5", "1.5x", " 1", "1 ", "1e999", "abc", "--1", "+-1"})
     CHECK_FALSE(read_number(word));
 }
 
@@ -89,14 +92,15 @@ TEST_CASE("names and remarks enter the headers of files as one line without esca
     if (std::string(output) != "m.nc") CHECK(safe_for_terminals(text));
     CHECK_THAT(text, !Contains("\x1b[31m"));
   }
-  const ProgramRun run = run_program({"reconstruct", corpus_folder + "adv--escape.json", "--order", "1", "--device", "cpu",
-                                      "-q", "-o", folder / "o.ply"});
+  const ProgramRun run = run_program({"reconstruct", corpus_folder + "adv--escape.json", "--order", "1", "--device",
+                                      "cpu", "-q", "-o", folder / "o.ply"});
   REQUIRE(run.exit_code == 0);
   const std::string ply = read_text(folder / "o.ply");
   CHECK(safe_for_terminals(ply.substr(0, ply.find("end_header"))));
 }
 
-TEST_CASE("file names with escapes and bytes that are no UTF-8 are opened, and shown without them", "[safe-text][cli]") {
+TEST_CASE("file names with escapes and bytes that are no UTF-8 are opened, and shown without them",
+          "[safe-text][cli]") {
   const TemporaryFolder folder;
   const std::string odd = folder / "a\x1b[31m\xff\xc2\x9b.off";
   REQUIRE(run_program({"inspect", "builtin:box", "-o", folder / "box.off"}).exit_code == 0);
@@ -112,9 +116,7 @@ TEST_CASE("file names with escapes and bytes that are no UTF-8 are opened, and s
     INFO(run.out << run.err);
     CHECK(safe_for_terminals(run.out));
     CHECK(safe_for_terminals(run.err));
-    CHECK(run.exit_code == (arguments.back() == odd + "x"               ? 5
-                            : arguments.back().find("\x1b[31m") == 0 ? 2
-                                                                       : 0));
+    CHECK(run.exit_code == (arguments.back() == odd + "x" ? 5 : arguments.back().find("\x1b[31m") == 0 ? 2 : 0));
   }
   CHECK(safe_for_terminals(read_text(folder / "o\x1b[1m.csv")));
   const ProgramRun two_lines = run_program({"inspect", folder / "a\ncowgpu: wrote b"});

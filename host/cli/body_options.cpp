@@ -104,10 +104,10 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
                   "Mass per cubed length unit of the mesh; with --length-unit in kg/m3, or with a unit: 2.7g/cm3")
       ->capture_default_str();
   command
-      .add_option(
-          "--length-unit", options.length_unit,
-          "The length that 1 in the file stands for, of a mesh or of coefficients that do not say it: mm, km, 2.3m ...; "
-          "results are in metres and kilograms")
+      .add_option("--length-unit", options.length_unit,
+                  "The length that 1 in the file stands for, of a mesh or of coefficients that do not say it: mm, km, "
+                  "2.3m ...; "
+                  "results are in metres and kilograms")
       ->type_name("LENGTH")
       ->check(not_empty());
   command

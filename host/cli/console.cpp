@@ -127,8 +127,8 @@ void ConsoleMonitor::progress(const char* what, double fraction) {
   constexpr int width = 30;
   const int full = int(width * fraction);
   say_raw(fmt::format("\r{} [{}{}] {:3.0f} %, {:.0f} s, about {:.0f} s left\033[K", what,
-                  std::string(std::size_t(full), '#'), std::string(std::size_t(width - full), ' '), 100 * fraction,
-                  elapsed, left));
+                      std::string(std::size_t(full), '#'), std::string(std::size_t(width - full), ' '), 100 * fraction,
+                      elapsed, left));
   std::fflush(stderr);
   shown_ = true;
 }

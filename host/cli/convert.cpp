@@ -145,9 +145,10 @@ void add_convert(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("convert", "Coefficients in another file format, convention, radius or frame");
   command
-      ->add_option("IN", options->input,
-                   "Coefficients, told by their content: JSON or CSV (of `expand` or `convert`), netCDF (as pyshtools writes "
-                   "them), ICGEM's .gfc, SHTOOLS text, gravity tables (SHADR: .tab, .sha, .txt ...)")
+      ->add_option(
+          "IN", options->input,
+          "Coefficients, told by their content: JSON or CSV (of `expand` or `convert`), netCDF (as pyshtools writes "
+          "them), ICGEM's .gfc, SHTOOLS text, gravity tables (SHADR: .tab, .sha, .txt ...)")
       ->required();
   command->add_option("OUT", options->output, "FILE.json, .csv, .nc, .gfc or .sh")->required();
   command->add_option("--of", options->of, "Of a result of `expand`: mass (default), harmonic, stretch, smooth or flow")
@@ -181,8 +182,7 @@ void add_convert(CLI::App& app, Common& common) {
       ->capture_default_str();
   add_degree_option(*command, options->lmax.emplace(-1), "Leave out the degrees above");
   command
-      ->add_option("--input-normalisation", options->input_normalisation,
-                   "Of IN, where a table does not say it (4pi)")
+      ->add_option("--input-normalisation", options->input_normalisation, "Of IN, where a table does not say it (4pi)")
       ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
   command->add_option("--input-phase", options->input_phase, "The same (none)")->check(CLI::IsMember({"cs", "none"}));
   command->add_flag("--si", options->si,
@@ -190,12 +190,14 @@ void add_convert(CLI::App& app, Common& common) {
   add_length_unit_option(*command, options->length_unit, "Of IN");
   command->get_option("--si")->excludes("--length-unit");
   add_run_options(*command, common);
-  command->footer("Coefficients are of a field on the unit sphere, and it is the same field in every convention. Of multipoles that is\n"
-                  "f = sum of conj(Q_lm) / R^l Y_lm, Q_lm = integral of density r^l Y_lm with orthonormal Y_lm: --normalisation\n"
-                  "4pi gives the 4pi coefficients of f, which are Q_lm / (R^l sqrt(4 pi)) and no moments with other Y_lm. Of a\n"
-                  "potential (--kind potential) it is f = V R / GM at r = R. Files say it as coefficients_of.\n"
-                  "host/convention.hpp and host/coefficient_set.hpp say what the conventions are.\n"
-                  "Example: cowgpu expand benchmark --lmax 64 -o cow.json && cowgpu convert cow.json cow.gfc");
+  command->footer(
+      "Coefficients are of a field on the unit sphere, and it is the same field in every convention. Of multipoles "
+      "that is\n"
+      "f = sum of conj(Q_lm) / R^l Y_lm, Q_lm = integral of density r^l Y_lm with orthonormal Y_lm: --normalisation\n"
+      "4pi gives the 4pi coefficients of f, which are Q_lm / (R^l sqrt(4 pi)) and no moments with other Y_lm. Of a\n"
+      "potential (--kind potential) it is f = V R / GM at r = R. Files say it as coefficients_of.\n"
+      "host/convention.hpp and host/coefficient_set.hpp say what the conventions are.\n"
+      "Example: cowgpu expand benchmark --lmax 64 -o cow.json && cowgpu convert cow.json cow.gfc");
   command->callback([options, &common] {
     if (*options->lmax < 0) options->lmax.reset();
     run(*options, common);

@@ -87,9 +87,10 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
   CLI::App* command = app.add_subcommand(application.name, application.summary);
   const auto options = std::make_shared<PhysicsOptions>();
   add_body_options(*command, options->body);
-  command->get_option("mesh")->description("Coefficients of its mass (JSON, CSV, netCDF, ICGEM's .gfc, SHTOOLS text or a gravity table, told by their "
-                                           "content), or a mesh: " +
-                                           command->get_option("mesh")->get_description());
+  command->get_option("mesh")->description(
+      "Coefficients of its mass (JSON, CSV, netCDF, ICGEM's .gfc, SHTOOLS text or a gravity table, told by their "
+      "content), or a mesh: " +
+      command->get_option("mesh")->get_description());
   command->get_option("mesh")->type_name("MESH|COEFFS");
   const Solve solve = application.add(*command, common);
   if (application.asks_radius)
@@ -192,8 +193,7 @@ PhysicsInput load_input(const PhysicsOptions& options) {
   }
   const StatedUnits stated = stated_units(body);
   refuse_placing(body);
-  input.coefficients =
-      read_coefficient_set(body.mesh, "", stated.metric ? std::optional(stated.metres) : std::nullopt);
+  input.coefficients = read_coefficient_set(body.mesh, "", stated.metric ? std::optional(stated.metres) : std::nullopt);
   input.notes = input.coefficients->notes;
   if (options.density_given && input.coefficients->kind != CoefficientKind::field)
     restate_density(options, *input.coefficients);

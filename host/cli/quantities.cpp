@@ -46,20 +46,22 @@ double parse_length_unit(const std::string& text) {
   const bool bare = !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0; // "mm" is one of them
   const Measure unit = parse_measure("--length-unit", (bare ? "1" : "") + text, Dimension::length);
   if (!unit.has_unit)
-    throw Error(Fault::bad_argument,
-                fmt::format("--length-unit {0}: {0} of what? It is the length that 1 in the file stands for, such as mm, km "
-                            "or 2.3m",
-                            text));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--length-unit {0}: {0} of what? It is the length that 1 in the file stands for, such as mm, km "
+                    "or 2.3m",
+                    text));
   if (!(unit.value > 0)) throw Error(Fault::bad_argument, fmt::format("--length-unit {}: it must be above 0", text));
   return unit.value;
 }
 
 void add_length_unit_option(CLI::App& command, std::string& text, const char* of) {
   command
-      .add_option("--length-unit", text,
-                  fmt::format("{}: the length that 1 stands for, where the file does not say it (.sh and gravity tables: "
-                              "metres are assumed) or has it from its mesh: km, 2.3m ...",
-                              of))
+      .add_option(
+          "--length-unit", text,
+          fmt::format("{}: the length that 1 stands for, where the file does not say it (.sh and gravity tables: "
+                      "metres are assumed) or has it from its mesh: km, 2.3m ...",
+                      of))
       ->type_name("LENGTH")
       ->check(not_empty());
 }

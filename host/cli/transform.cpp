@@ -1,7 +1,7 @@
 #include "host/cli/commands.hpp"
 
-#include "host/clock.hpp"
 #include "host/cli/quantities.hpp"
+#include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/grid_file.hpp"

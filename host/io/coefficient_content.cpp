@@ -31,7 +31,8 @@ bool is_table_of_columns(std::string_view text) {
   while (lines.next()) {
     if (lines.words.empty()) continue;
     if (lines.words[0].starts_with('#')) {
-      const std::string_view word = lines.words[0] == "#" && lines.words.size() > 1 ? lines.words[1] : lines.words[0].substr(1);
+      const std::string_view word =
+          lines.words[0] == "#" && lines.words.size() > 1 ? lines.words[1] : lines.words[0].substr(1);
       named = named || word == "lmax" || word == "cowgpu" || word == "normalisation" || word == "phase";
       continue;
     }

@@ -30,11 +30,13 @@ CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std
     throw Error(Fault::file_format, name + ": this is a mesh and no table of coefficients");
   if (!held && !named)
     throw Error(bytes.empty() ? Fault::file_truncated : Fault::file_format,
-                bytes.empty() ? name + ": the file is empty"
-                              : fmt::format("{}: this is no file of coefficients: JSON and CSV of this program, netCDF, "
-                                            "ICGEM's .gfc, and tables with rows degree, order, C, S are read",
-                                            name));
-  const CoefficientFormat format = held ? *held : *named; // where the content says nothing, the reader says what is wrong
+                bytes.empty()
+                    ? name + ": the file is empty"
+                    : fmt::format("{}: this is no file of coefficients: JSON and CSV of this program, netCDF, "
+                                  "ICGEM's .gfc, and tables with rows degree, order, C, S are read",
+                                  name));
+  const CoefficientFormat format =
+      held ? *held : *named; // where the content says nothing, the reader says what is wrong
   if (!of.empty() && format != CoefficientFormat::json && format != CoefficientFormat::csv)
     throw Error(Fault::bad_argument,
                 fmt::format("--of {}: {} holds no expansions to choose from; the .json and .csv of `cowgpu expand` do",

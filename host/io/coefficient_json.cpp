@@ -165,8 +165,9 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
   take_metadata(metadata, name, set);
   // Provenance is told where it is there; nothing depends on it.
   const auto text = [](const json& object, const char* key) {
-    return object.is_object() && object.contains(key) && object.at(key).is_string() ? one_line(object.at(key).get<std::string>())
-                                                                                    : std::string();
+    return object.is_object() && object.contains(key) && object.at(key).is_string()
+               ? one_line(object.at(key).get<std::string>())
+               : std::string();
   };
   set.provenance.created = text(all, "created");
   if (all.contains("mesh")) {

@@ -100,8 +100,8 @@ void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordL
     }
   const std::size_t count = SphereCoefficients::count(lmax);
   const std::size_t low_places = std::min<std::size_t>(count, 3);
-  const auto low = std::size_t(
-      std::count_if(rows.begin(), rows.end(), [](const CoefficientRow& row) { return row.l < 2; }));
+  const auto low =
+      std::size_t(std::count_if(rows.begin(), rows.end(), [](const CoefficientRow& row) { return row.l < 2; }));
   const std::size_t missing_low = low_places - low, missing = count - rows.size() - missing_low;
   const std::size_t last = rows.empty() ? 0 : place_of(rows.back().l, rows.back().m);
   const auto cut_off = [&](std::size_t at) {
@@ -114,13 +114,15 @@ void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordL
     const std::size_t gap = first_gap(rows, place_of(2, 0));
     if (complete || gap > last || rows.empty() || rows.back().l < lmax) cut_off(gap);
     if (count > 100000 + 1000 * rows.size())
-      lines.fail(Fault::too_large,
-                 fmt::format("{} rows, and the {} coefficients to degree {} are more than 1000 a row: almost all of them "
-                             "would be 0",
-                             rows.size(), count, lmax));
+      lines.fail(
+          Fault::too_large,
+          fmt::format("{} rows, and the {} coefficients to degree {} are more than 1000 a row: almost all of them "
+                      "would be 0",
+                      rows.size(), count, lmax));
     const auto [l, m] = degree_and_order(gap);
-    set.notes.push_back(fmt::format("{} row{} that the file leaves out, the first of degree {}, order {}, {} taken as 0",
-                                    missing, missing == 1 ? "" : "s", l, m, missing == 1 ? "was" : "were"));
+    set.notes.push_back(
+        fmt::format("{} row{} that the file leaves out, the first of degree {}, order {}, {} taken as 0", missing,
+                    missing == 1 ? "" : "s", l, m, missing == 1 ? "was" : "were"));
   }
   set.lmax = lmax;
   set.first.assign(count, 0);

@@ -123,14 +123,14 @@ std::string place(const std::string& file, std::size_t line) {
 }
 
 std::string coefficients_of(const CoefficientSet& set) {
-  if (set.kind == CoefficientKind::potential)
-    return "f = V R / GM on the sphere r = R, V the gravitational potential";
+  if (set.kind == CoefficientKind::potential) return "f = V R / GM on the sphere r = R, V the gravitational potential";
   if (set.kind == CoefficientKind::field) return "";
   const std::string field = "f = sum of conj(Q_lm) / R^l Y_lm on the unit sphere, Q_lm = integral of density r^l Y_lm";
   if (set.convention == Convention{})
     return set.form == Form::complex ? "conj of f: these are Q_lm / R^l; " + field : field;
   return (set.form == Form::complex ? "conj of " : "") + field +
-         ", both Y_lm orthonormal with the Condon-Shortley phase: the same f as in any other convention, so these are no "
+         ", both Y_lm orthonormal with the Condon-Shortley phase: the same f as in any other convention, so these are "
+         "no "
          "moments of density r^l with other Y_lm";
 }
 
@@ -221,7 +221,8 @@ bool take_metadata(const Metadata& metadata, const std::string& file, Coefficien
   read.text("mesh_sha256", set.provenance.mesh_sha256);
   read.text("history", set.provenance.history);
   for (const auto& [key, at] : metadata)
-    if (key.starts_with("remark.") && key.size() > 7) set.remarks.emplace_back(one_line(key.substr(7)), one_line(at.text));
+    if (key.starts_with("remark.") && key.size() > 7)
+      set.remarks.emplace_back(one_line(key.substr(7)), one_line(at.text));
   return normalisation && phase;
 }
 
@@ -230,8 +231,8 @@ double remark_number(const CoefficientSet& set, const std::string& file, std::st
     if (key != word) continue;
     const auto value = read_number(text);
     if (!value)
-      throw Error(Fault::file_syntax,
-                  fmt::format("{}: the remark {} is '{}', and that is no finite number", file, shown(word, 60), shown(text)));
+      throw Error(Fault::file_syntax, fmt::format("{}: the remark {} is '{}', and that is no finite number", file,
+                                                  shown(word, 60), shown(text)));
     return *value;
   }
   return otherwise;

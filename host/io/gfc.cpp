@@ -69,7 +69,8 @@ CoefficientSet read_facts(const Head& head, WordLines& lines, int& lmax) {
     set.convention = {norm == "unnormalized" ? Normalisation::unnormalised : Normalisation::four_pi, Phase::none};
   } else {
     set.convention = {Normalisation::four_pi, Phase::none};
-    if (!head.metadata.contains("cowgpu")) set.notes.push_back("the head has no norm; fully_normalized (4pi) was assumed");
+    if (!head.metadata.contains("cowgpu"))
+      set.notes.push_back("the head has no norm; fully_normalized (4pi) was assumed");
   }
   lines.number = end;
   const bool earth = head.values.contains("earth_gravity_constant") || !head.values.contains("gravity_constant");

@@ -69,8 +69,8 @@ void order_columns(const Raw& raw, Cut& cut, std::vector<std::string>& notes) {
   if (length > 1 && near(std::fabs(raw.lons.back() - raw.lons.front()), 360, raw.tolerance)) {
     --count;
     cut.extra = count;
-    notes.push_back(fmt::format("the column at {0:g} degrees repeats the one at {1:g} and was left out", raw.lons.back(),
-                                raw.lons.front()));
+    notes.push_back(fmt::format("the column at {0:g} degrees repeats the one at {1:g} and was left out",
+                                raw.lons.back(), raw.lons.front()));
   }
   const auto place = [&](std::size_t j) { return longitude_from_0(raw.lons[j], raw.tolerance); };
   cut.columns.resize(count);
@@ -84,7 +84,8 @@ void order_columns(const Raw& raw, Cut& cut, std::vector<std::string>& notes) {
     cut.columns[j] = westwards ? (first + count - j) % count : (first + j) % count;
   if (westwards) notes.push_back("the file's longitudes go westwards and were turned over");
   if (cut.columns.front() != 0 && !westwards)
-    notes.push_back(fmt::format("the file's longitudes begin at {:g} degrees; they were taken from 0 to 360", raw.lons[0]));
+    notes.push_back(
+        fmt::format("the file's longitudes begin at {:g} degrees; they were taken from 0 to 360", raw.lons[0]));
   cut.first_longitude = place(cut.columns.front());
 }
 
@@ -101,10 +102,11 @@ void check_coordinates(const Raw& raw, const SphereGrid& grid, const Cut& cut) {
     const std::size_t at = cut.columns[std::size_t(j)];
     const double found = longitude_from_0(raw.lons[at], raw.tolerance), expected = grid.longitude_degrees(j);
     if (!near(found, expected, raw.tolerance))
-      damaged(raw.lon_place(at),
-              fmt::format("longitude {} where point {} of a ring of {} lies at {} degrees; the points of a ring have equal "
-                          "distances and go once round the sphere",
-                          raw.lons[at], j, grid.ring_length, expected));
+      damaged(
+          raw.lon_place(at),
+          fmt::format("longitude {} where point {} of a ring of {} lies at {} degrees; the points of a ring have equal "
+                      "distances and go once round the sphere",
+                      raw.lons[at], j, grid.ring_length, expected));
   }
 }
 
@@ -284,10 +286,11 @@ const NetcdfVariable& coordinate(const NetcdfFile& netcdf, bool (*named)(std::st
         (text_of_attribute(v, "standard_name") == standard || text_of_attribute(v, "units").starts_with(units_begin)))
       found = &v;
   if (!found)
-    throw Error(Fault::file_format,
-                fmt::format("{}: there is no coordinate of the {}, a variable of one dimension: a grid has lat(lat) and "
-                            "lon(lon), or latitude and longitude, or y and x",
-                            netcdf.name, standard));
+    throw Error(
+        Fault::file_format,
+        fmt::format("{}: there is no coordinate of the {}, a variable of one dimension: a grid has lat(lat) and "
+                    "lon(lon), or latitude and longitude, or y and x",
+                    netcdf.name, standard));
   const NetcdfAttribute* units = attribute(found->attributes, "units");
   if (units && (!units->is_text || !units->text.starts_with("degree")))
     damaged(fmt::format("{}: variable {}", netcdf.name, shown(found->name)),
@@ -325,9 +328,10 @@ std::vector<NetcdfField> fields_over(const NetcdfFile& netcdf, std::size_t lat, 
     const NetcdfAttribute* is_unsigned = attribute(v.attributes, "_Unsigned");
     if (is_unsigned && is_unsigned->is_text && is_unsigned->text == "true" &&
         std::any_of(v.values.begin(), v.values.end(), [](double value) { return value < 0; }))
-      throw Error(Fault::file_format, fmt::format("{}: variable {} has unsigned numbers in a signed type (_Unsigned); write "
-                                                  "it anew as short or float",
-                                                  netcdf.name, shown(v.name)));
+      throw Error(Fault::file_format,
+                  fmt::format("{}: variable {} has unsigned numbers in a signed type (_Unsigned); write "
+                              "it anew as short or float",
+                              netcdf.name, shown(v.name)));
     list.push_back(&v);
     if (attribute(v.attributes, "scale_factor") || attribute(v.attributes, "add_offset"))
       notes.push_back(fmt::format("variable {} is packed: scale_factor and add_offset were applied", shown(v.name)));

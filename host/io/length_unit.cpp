@@ -79,25 +79,28 @@ void settle_length_unit(CoefficientSet& set, std::optional<double> metres, bool 
   double unit = 1;
   if (metres) {
     unit = *metres;
-    set.notes.push_back(fmt::format("R = {} and GM = {} are taken in {}, as --length-unit says", radius, gm, unit_text(unit)));
+    set.notes.push_back(
+        fmt::format("R = {} and GM = {} are taken in {}, as --length-unit says", radius, gm, unit_text(unit)));
   } else if (const KnownBody* body = body_of(radius, gm)) {
     unit = 1000;
-    set.notes.push_back(fmt::format("the file does not say its unit of length: kilometres were taken, because R = {} and GM "
-                                    "= {} are those of {} in kilometres; --length-unit states another",
-                                    radius, gm, body->name));
+    set.notes.push_back(
+        fmt::format("the file does not say its unit of length: kilometres were taken, because R = {} and GM "
+                    "= {} are those of {} in kilometres; --length-unit states another",
+                    radius, gm, body->name));
   } else if (!format_says_metres) {
     const KnownBody* in_metres = body_of(radius / 1000, gm / 1e9);
-    set.notes.push_back(fmt::format("the file does not say its unit of length: metres assumed{}; --length-unit km states "
-                                    "that R = {} and GM = {} are in kilometres",
-                                    in_metres ? fmt::format(", in which R and GM are those of {}", in_metres->name) : "",
-                                    radius, gm));
+    set.notes.push_back(
+        fmt::format("the file does not say its unit of length: metres assumed{}; --length-unit km states "
+                    "that R = {} and GM = {} are in kilometres",
+                    in_metres ? fmt::format(", in which R and GM are those of {}", in_metres->name) : "", radius, gm));
   }
   if (unit == 1) return;
   set.reference_radius = radius * unit;
   set.gm = gm * (unit * unit * unit);
   if (!std::isfinite(*set.reference_radius) || !std::isfinite(*set.gm))
-    throw Error(Fault::bad_argument,
-                fmt::format("--length-unit: in units of {} m R = {} and GM = {} have no place in a double", unit, radius, gm));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--length-unit: in units of {} m R = {} and GM = {} have no place in a double", unit, radius, gm));
 }
 
 void state_length_unit(CoefficientSet& set, double metres, const std::string& file) {

@@ -374,9 +374,8 @@ NetcdfFile parse_netcdf(std::string bytes, const std::string& name) {
     const ssize_t got = ::read(reasons.fd[0], why.data(), why.size());
     why.resize(got > 0 ? std::size_t(got) : 0);
     if (why.empty()) why = damage.what.empty() ? "the netCDF library fails on it" : damage.what;
-    throw Error(
-        Fault::file_format,
-        fmt::format("{}: the netCDF file is damaged or incomplete ({}). Fetch or write it again", name, why));
+    throw Error(Fault::file_format,
+                fmt::format("{}: the netCDF file is damaged or incomplete ({}). Fetch or write it again", name, why));
   } catch (const Error& error) {
     end_reader(true);
     throw Error(error.fault(), fmt::format("{}: {}", name, error.what()));

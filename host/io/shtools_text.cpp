@@ -51,9 +51,8 @@ bool all_numbers(const WordLines& lines) {
 
 // A line that begins with a number, and most of its words are numbers, finite or not.
 bool mostly_numbers(const WordLines& lines) {
-  const auto count = std::count_if(lines.words.begin(), lines.words.end(), [](std::string_view word) {
-    return WordLines::number_in(word) || to_number(word);
-  });
+  const auto count = std::count_if(lines.words.begin(), lines.words.end(),
+                                   [](std::string_view word) { return WordLines::number_in(word) || to_number(word); });
   return lines.words.size() >= shortest_header && WordLines::number_in(lines.words[0]) &&
          2 * std::size_t(count) > lines.words.size();
 }
@@ -113,8 +112,9 @@ private:
                   fmt::format("a header of {} value{}, and headers of 4 (r0, gm, omega, lmax) to 8 (r0, gm, its error, "
                               "lmax, mmax, normalised, longitude, latitude) are known{}",
                               size, size == 1 ? "" : "s",
-                              size == 2 ? "; coefficients of magnetic fields, which have r0 and lmax, are read without it"
-                                        : ""));
+                              size == 2
+                                  ? "; coefficients of magnetic fields, which have r0 and lmax, are read without it"
+                                  : ""));
     if (!header_.empty()) lines_.fail(Fault::file_syntax, fmt::format("a second header; line {} is one", header_line_));
     header_line_ = lines_.number;
     for (const std::string_view word : lines_.words) header_.push_back(lines_.real(word));
@@ -124,14 +124,16 @@ private:
   void check_header() const {
     if (!(header_[0] > 0)) lines_.fail(Fault::file_syntax, "r0 must be above 0");
     if (!(header_[3] >= 0 && header_[3] <= largest_file_degree && header_[3] == std::floor(header_[3])))
-      lines_.fail(Fault::file_syntax, fmt::format("lmax is {}, the fourth value of the header; whole numbers from 0 to {} "
-                                                  "are possible",
-                                                  header_[3], largest_file_degree));
+      lines_.fail(Fault::file_syntax,
+                  fmt::format("lmax is {}, the fourth value of the header; whole numbers from 0 to {} "
+                              "are possible",
+                              header_[3], largest_file_degree));
     if (header_.size() > 5 && header_[5] != 1 && header_[5] != 0)
-      lines_.fail(Fault::file_format,
-                  fmt::format("the sixth value of the header, which says whether the coefficients are normalised, is {}; 1 "
-                              "(4pi) and 0 (unnormalised) are read",
-                              header_[5]));
+      lines_.fail(
+          Fault::file_format,
+          fmt::format("the sixth value of the header, which says whether the coefficients are normalised, is {}; 1 "
+                      "(4pi) and 0 (unnormalised) are read",
+                      header_[5]));
   }
 
   void take_row() {
@@ -180,12 +182,14 @@ private:
     for (const RawRow& raw : rows_) {
       lines_.number = raw.line;
       if (dov_ && raw.words > 4)
-        lines_.fail(Fault::file_syntax, fmt::format("{} words; a table with rows of negative orders has degree, order, value "
-                                                    "and perhaps its error",
-                                                    raw.words));
+        lines_.fail(Fault::file_syntax,
+                    fmt::format("{} words; a table with rows of negative orders has degree, order, value "
+                                "and perhaps its error",
+                                raw.words));
       if (!dov_ && raw.words < 4 && raw.m > 0)
-        lines_.fail(Fault::file_truncated, "S is missing; it may also stand in a row of order -m (degree, order, value), but "
-                                           "this file has no negative orders");
+        lines_.fail(Fault::file_truncated,
+                    "S is missing; it may also stand in a row of order -m (degree, order, value), but "
+                    "this file has no negative orders");
       if (!dov_ && raw.m == 0 && raw.second != 0) lines_.fail(Fault::file_syntax, "S of order 0 must be 0");
       errors_ = errors_ || raw.words > (dov_ ? 3U : 4U);
       if (raw.m < 0)
@@ -200,7 +204,9 @@ private:
   std::vector<CoefficientRow> paired(std::vector<CoefficientRow> halves) {
     std::vector<std::size_t> order(halves.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto key = [&](std::size_t i) { return std::tuple(halves[i].l, halves[i].m, rows_[i].m < 0, halves[i].line); };
+    const auto key = [&](std::size_t i) {
+      return std::tuple(halves[i].l, halves[i].m, rows_[i].m < 0, halves[i].line);
+    };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
     std::vector<CoefficientRow> rows;
     std::size_t alone = 0;
@@ -228,12 +234,10 @@ private:
   }
 
   void check_lmax(int lmax, bool ours) {
-    const auto differs = [&](double stated) {
-      return stated > lmax ? Fault::file_truncated : Fault::file_syntax;
-    };
+    const auto differs = [&](double stated) { return stated > lmax ? Fault::file_truncated : Fault::file_syntax; };
     if (!header_.empty() && header_[3] != lmax)
-      lines_.fail(differs(header_[3]), fmt::format("the rows end at degree {}, and the header, line {}, says lmax {}", lmax,
-                                                   header_line_, header_[3]));
+      lines_.fail(differs(header_[3]), fmt::format("the rows end at degree {}, and the header, line {}, says lmax {}",
+                                                   lmax, header_line_, header_[3]));
     if (!ours || !metadata_.contains("lmax")) return;
     lines_.number = metadata_["lmax"].line;
     const int stated = lines_.whole(metadata_["lmax"].text, "lmax", largest_file_degree);
@@ -249,8 +253,7 @@ private:
     }
     if (ours) metadata_.erase("form");
     if (ours && header_.empty() && metadata_.contains("kind"))
-      lines_.fail(Fault::file_truncated,
-                  "the file says that it is of a potential and has no line r0, gm, omega, lmax");
+      lines_.fail(Fault::file_truncated, "the file says that it is of a potential and has no line r0, gm, omega, lmax");
     if (ours && take_metadata(metadata_, lines_.file(), set_)) return;
     const bool normalised = header_.size() < 6 || header_[5] == 1;
     set_.convention = {normalised ? Normalisation::four_pi : Normalisation::unnormalised, Phase::none};
@@ -268,8 +271,9 @@ private:
       set_.notes.push_back("C_00 is 0 in the file and was taken as 1: the body's mass is in GM");
     }
     if ((header_.size() > 6 && header_[6] != 0) || (header_.size() > 7 && header_[7] != 0))
-      set_.notes.push_back(fmt::format("the header's reference longitude and latitude, {} and {} degrees, were left out",
-                                       header_[6], header_.size() > 7 ? header_[7] : 0));
+      set_.notes.push_back(
+          fmt::format("the header's reference longitude and latitude, {} and {} degrees, were left out", header_[6],
+                      header_.size() > 7 ? header_[7] : 0));
     set_.units_stated = false;
     settle_length_unit(set_, metres, false);
   }
