@@ -220,11 +220,12 @@ TEST_CASE("a tetrahedron's edges have the length asked for", "[builtin]") {
 
 TEST_CASE("the name is canonical: it shows the sizes and the level used", "[builtin]") {
   using Pair = std::pair<std::string, std::string>;
-  const auto [spec, name] = GENERATE(
-      Pair{"cow", "cow@3"}, Pair{"cow@1", "cow@1"}, Pair{"cow@01", "cow@1"}, Pair{"sphere", "sphere:1@4"},
-      Pair{"sphere@0", "sphere:1@0"}, Pair{"sphere:0.50@2", "sphere:0.5@2"}, Pair{"sphere:1e3@0", "sphere:1000@0"},
-      Pair{"box", "box:1,1,1@0"}, Pair{"box:1,2.0,3", "box:1,2,3@0"}, Pair{"ellipsoid:3,2,1", "ellipsoid:3,2,1@4"},
-      Pair{"tetrahedron", "tetrahedron:1@0"}, Pair{"tetrahedron:0.1@2", "tetrahedron:0.1@2"});
+  const auto [spec, name] =
+      GENERATE(Pair{"cow", "cow@3"}, Pair{"cow@1", "cow@1"}, Pair{"cow@01", "cow@1"}, Pair{"cow@+1", "cow@1"},
+               Pair{"sphere", "sphere:1@4"}, Pair{"sphere@0", "sphere:1@0"}, Pair{"sphere:+1@0", "sphere:1@0"},
+               Pair{"sphere:0.50@2", "sphere:0.5@2"}, Pair{"sphere:1e3@0", "sphere:1000@0"}, Pair{"box", "box:1,1,1@0"},
+               Pair{"box:1,2.0,3", "box:1,2,3@0"}, Pair{"ellipsoid:3,2,1", "ellipsoid:3,2,1@4"},
+               Pair{"tetrahedron", "tetrahedron:1@0"}, Pair{"tetrahedron:0.1@2", "tetrahedron:0.1@2"});
   const RawMesh mesh = builtin_mesh(spec);
   CHECK(mesh.name == "builtin:" + name);
   CHECK(mesh.sha256.empty());
@@ -236,12 +237,12 @@ TEST_CASE("the name is canonical: it shows the sizes and the level used", "[buil
 
 TEST_CASE("a bad name, level or size is refused, with the reason", "[builtin]") {
   const std::string spec = GENERATE(
-      "", "@", ":", "bull", "Cow", "cow ", " cow", "cow@", "cow@9", "cow@-1", "cow@+1", "cow@3x", "cow@3.0", "cow@ 3",
-      "cow@3@3", "cow@4294967296", "cow@99999999999999999999", "cow:1", "cow:", "sphere@10", "sphere:", "sphere:0",
-      "sphere:-1", "sphere:nan", "sphere:inf", "sphere:1e31", "sphere:1e-31", "sphere:1e999", "sphere:1,2", "sphere:1x",
-      "sphere:+1", "sphere: 1", "sphere:1 @4", "sphere:1@4junk", "sphere@4:1", "box:1", "box:1,2", "box:1,2,3,4",
-      "box:1,,2", "box:1,2,", "box:,1,2", "box:1,2,0", "box:1,2,nan", "box:1,1,1e7", "box@12", "ellipsoid",
-      "ellipsoid@4", "ellipsoid:1,1", "ellipsoid:1,1,1@10", "tetrahedron:1,2", "tetrahedron@13", "sphere:0x1");
+      "", "@", ":", "bull", "Cow", "cow ", " cow", "cow@", "cow@9", "cow@-1", "cow@3x", "cow@3.0", "cow@ 3", "cow@3@3",
+      "cow@4294967296", "cow@99999999999999999999", "cow:1", "cow:", "sphere@10", "sphere:", "sphere:0", "sphere:-1",
+      "sphere:nan", "sphere:inf", "sphere:1e31", "sphere:1e-31", "sphere:1e999", "sphere:1,2", "sphere:1x", "sphere: 1",
+      "sphere:1 @4", "sphere:1@4junk", "sphere@4:1", "box:1", "box:1,2", "box:1,2,3,4", "box:1,,2", "box:1,2,",
+      "box:,1,2", "box:1,2,0", "box:1,2,nan", "box:1,1,1e7", "box@12", "ellipsoid", "ellipsoid@4", "ellipsoid:1,1",
+      "ellipsoid:1,1,1@10", "tetrahedron:1,2", "tetrahedron@13", "sphere:0x1");
   INFO(spec);
   CHECK(fault_of(spec) == Fault::bad_argument);
 }

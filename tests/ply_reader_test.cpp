@@ -83,7 +83,7 @@ TEST_CASE("PLY headers are read with comments, empty lines and a byte order mark
         CHECK(mesh.vertices == (binary ? expected.vertices : body.vertices));
         CHECK(mesh.faces == expected.faces);
         CHECK(mesh.notes.empty());
-        if (!binary) CHECK(mesh.face_lines.front() == 15 + body.vertices.size());
+        if (!binary) CHECK(mesh.face_lines.front() == 16 + body.vertices.size());
       }
 }
 
@@ -143,8 +143,8 @@ TEST_CASE("PLY triangle strips become triangles, every second one turned, and -1
   CHECK(strips("5 0 1 2 3 4\n", 1).notes == std::vector<std::string>{"1 triangle strip was cut into 3 triangles."});
   CHECK(strips("9 0 1 2 -1 2 1 3 -1 5\n", 1).faces == std::vector<Face>{{0, 1, 2}, {2, 1, 3}});
   CHECK(strips("3 0 1 2\n4 2 1 3 4\n", 2).faces == std::vector<Face>{{0, 1, 2}, {2, 1, 3}, {3, 1, 4}});
-  // Two strips joined by triangles without area: 2 2 3 3 turns every second triangle on.
-  CHECK(strips("8 0 1 2 2 3 3 4 5\n", 1).faces == std::vector<Face>{{0, 1, 2}, {3, 4, 5}});
+  // Two strips joined by triangles without area: 3 4 5 is the sixth triangle, and is turned.
+  CHECK(strips("8 0 1 2 2 3 3 4 5\n", 1).faces == std::vector<Face>{{0, 1, 2}, {4, 3, 5}});
   CHECK(outcome_of([&] { strips("3 0 1 6\n", 1); }).says("a triangle strip names vertex 6"));
   CHECK(outcome_of([&] { strips("3 0 1 -2\n", 1); }).fault == "mesh-index-range");
 }

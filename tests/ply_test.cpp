@@ -147,7 +147,7 @@ TEST_CASE("damaged PLY files are refused with the line or the byte", "[ply]") {
       {replaced(whole, "face 12", "face 11"), "file-syntax", "13 bytes follow"},
       {whole + "x", "file-syntax", "1 bytes follow"},
       {replaced(whole, "property double z\n", ""), "file-format", "x, y and z"},
-      {replaced(whole, "double z", "double y"), "file-syntax", "announced twice"},
+      {replaced(whole, "double z", "double y"), "file-format", "x, y and z"},
       {replaced(whole, "double z", "int z"), "file-format", "double or float"},
       {replaced(whole, "double z", "quad z"), "file-syntax", "x.ply:8:"},
       {replaced(whole, "double z", "list uchar double z"), "file-format", "x.ply:8:"},

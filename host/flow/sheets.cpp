@@ -116,9 +116,9 @@ std::vector<double> sheet_fields(std::span<const Vec3> vertices, std::span<const
       const Face& face = faces[sheet.face];
       const Vec3 &a = positions[face[0]], &b = positions[face[1]], &c = positions[face[2]];
       const double step = 2 * pi / double(length), half = sheet.half_width();
-      const auto first = std::int64_t(std::ceil((sheet.phi - half) / step - 1e-6));
-      const auto last =
-          half >= pi ? first + std::int64_t(length) - 1 : std::int64_t(std::floor((sheet.phi + half) / step + 1e-6));
+      const auto first = std::int64_t(std::ceil((sheet.phi - half) / step - grid.shift - 1e-6));
+      const auto last = half >= pi ? first + std::int64_t(length) - 1
+                                   : std::int64_t(std::floor((sheet.phi + half) / step - grid.shift + 1e-6));
       for (std::int64_t k = first; k <= last; ++k) {
         const auto j = std::size_t((k % std::int64_t(length) + std::int64_t(length)) % std::int64_t(length));
         const Vec3 p = directions(int(ring), int(j));

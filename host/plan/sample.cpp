@@ -181,8 +181,8 @@ int RingScan::spans(int ring, std::array<RingSpan, 2>& spans) const {
   }
   const int n = sample_.grid.ring_length;
   const double points_a_radian = n / (2 * pi);
-  const double first = std::ceil((phi_ + low) * points_a_radian - index_slack);
-  const double last = std::floor((phi_ + high) * points_a_radian + index_slack);
+  const double first = std::ceil((phi_ + low) * points_a_radian - sample_.grid.shift - index_slack);
+  const double last = std::floor((phi_ + high) * points_a_radian - sample_.grid.shift + index_slack);
   if (last < first) return 0;
   if (last - first + 1 >= n) {
     spans[0] = {0, n};
