@@ -20,7 +20,7 @@ struct KernelInfo;
 struct Patience {
   std::uint64_t slice_ns = 100'000'000;
   std::uint32_t slices = 600;    ///< after so many the device is given up as lost
-  std::uint32_t after_stop = 20; ///< after so many from a wish to stop on
+  std::uint32_t after_stop = 50; ///< after so many from a wish to stop on, and the device is given up too
 };
 
 /// Owns the VkDevice and the kernels made on it. Once the device is lost every further call throws Error(device_lost), and

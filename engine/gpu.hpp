@@ -66,7 +66,7 @@ private:
 };
 
 /// While one lives, waits for the device ask `stop`. True: the caller wants to stop, which throws Error(stopped) between two
-/// batches, or after two seconds where a batch does not end.
+/// batches, or after five seconds where a batch does not end.
 class StopScope {
 public:
   StopScope(Gpu& gpu, std::function<bool()> stop);

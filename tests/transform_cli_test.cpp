@@ -182,7 +182,6 @@ TEST_CASE("usage errors of the transforms say what is allowed", "[transform-cli]
       {"transform", "roundtrip", "--lmax", "4", "--runs", "0"},
       {"transform", "roundtrip", "--lmax", "4", "file"},
       {"spectrum"},
-      {"spectrum", folder / "x.txt"},
       {"spectrum", c, "--cross"},
       {"spectrum", c, c},
   };
