@@ -196,6 +196,7 @@ TEST_CASE("distance refuses what it cannot do with one line, a reason and an exi
       {"0,0,0\n\n1,,3\n", "p.csv:3: a finite number expected; '' is empty"},
       {"0,0,0\n1,2,1e999\n", "p.csv:2: a finite number expected; '1e999' has no place in a double"},
       {"x,y,height\n1,2,3\n", "p.csv:1: a line of names without one that is z"},
+      {"9,0 9,0 9,0\n", "p.csv:1: blanks and commas both part the numbers of '9,0 9,0 9,0'"},
       {"x,y,z\n", "there is no point"},
       {"", "there is no point"}};
   for (const auto& [text, words] : bad) {

@@ -125,7 +125,8 @@ TEST_CASE("tables that are wrong are refused by line, and say what is known", "[
   CHECK_THAT(fault("1738.0 1 1 2 2 1 0 0 0\n" + rows), StartsWith("file-format: t.tab:1: a header of 9 values,"));
   CHECK_THAT(fault(header + header + rows), StartsWith("file-syntax: t.tab:2: a second header; line 1"));
   CHECK_THAT(fault("1738.0, nan, 1e-4, 2\n" + rows), StartsWith("file-syntax: t.tab:1: ") || Contains("second"));
-  CHECK_THAT(fault("1738.0, 1, x, 2\n" + rows), StartsWith("file-syntax: t.tab:1: a number expected; 'x' is no number"));
+  CHECK_THAT(fault("1738.0, 1, x, 2\n" + rows),
+             StartsWith("file-syntax: t.tab:1: a number expected; 'x' is no number"));
   CHECK_THAT(fault("-1.5, 1, 1, 2\n" + rows), StartsWith("file-syntax: t.tab:1: r0 must be above 0"));
   CHECK_THAT(fault("1738.0, 1, 1, 2.5\n" + rows), StartsWith("file-syntax: t.tab:1: lmax is 2.5"));
   CHECK_THAT(fault("1738.0, 1, 1, 2, 2, 3\n" + rows), StartsWith("file-format: t.tab:1: the sixth value"));
@@ -141,6 +142,15 @@ TEST_CASE("tables that are wrong are refused by line, and say what is known", "[
   CHECK_THAT(fault("8193 0 1 0\n"), StartsWith("file-"));
   CHECK_THAT(fault(rows + "2.5 0 1 0\n"), StartsWith("file-syntax: t.tab:4: the degree is '2.5'"));
   CHECK_THAT(fault("words only\n"), StartsWith("file-truncated: "));
+  CHECK_THAT(fault("0 0 1,0 0,0\n1 0 0,0 0,0\n"), StartsWith("file-syntax: t.tab:1: blanks and commas both part"));
+  CHECK_THAT(fault("l,m,re,im\n0,0,1,0\n"), StartsWith("file-format: t.tab:1: complex coefficients"));
+  CHECK_THAT(fault("0 0 1 0\n1 -1 .1 -.2\n1 0 .3 0\n1 1 -.1 .2\n"),
+             StartsWith("file-syntax: t.tab:2: a fourth value below 0"));
+  for (const char* whole : {"250, 5, 0, 2\n", "250, 250, 0, 2\n", "5 3 0 2\n", "250 5 0 2 2 1\n"}) {
+    const CoefficientSet set = parse(whole + rows);
+    CHECK(set.lmax == 2);
+    CHECK(set.reference_radius.value_or(0) >= 5);
+  }
 }
 
 TEST_CASE("kilometres are told by R and GM of known bodies, or by the user; metres are assumed with a note",

@@ -38,6 +38,10 @@ std::optional<double> WordLines::number_in(std::string_view word) {
 }
 
 double WordLines::real(std::string_view word) const {
+  if (has_mixed_gaps(line))
+    fail(Fault::file_syntax, fmt::format("blanks and commas both part the numbers of '{}'; if a comma stands for the "
+                                         "point in one of them, write a point",
+                                         shown(line, 60)));
   const auto value = number_in(word);
   if (!value) fail(Fault::file_syntax, fmt::format("a number expected; '{}' {}", shown(word), not_a_number(word)));
   return *value;

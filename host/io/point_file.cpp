@@ -3,6 +3,7 @@
 #include "host/error.hpp"
 #include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
+#include "host/io/words.hpp"
 #include "host/number.hpp"
 
 #include <fmt/format.h>
@@ -50,7 +51,8 @@ std::vector<Vec3> read_points(const std::filesystem::path& path) {
       throw Error(Fault::file_syntax, fmt::format("{}:{}: {}", name, number, sentence));
     };
     const auto end = std::min(text.find('\n'), text.size());
-    const auto words = words_of(text.substr(0, end));
+    const std::string_view line = text.substr(0, std::min(end, text.find('#')));
+    const auto words = words_of(line);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (words.empty()) continue;
     if (std::exchange(first, false) && std::none_of(words.begin(), words.end(), read_number)) {
@@ -61,6 +63,10 @@ std::vector<Vec3> read_points(const std::filesystem::path& path) {
       }
       continue;
     }
+    if (has_mixed_gaps(line))
+      fail(fmt::format("blanks and commas both part the numbers of '{}'; if a comma stands for the point in one of "
+                       "them, write a point",
+                       shown(line, 60)));
     Vec3 point;
     for (std::size_t c = 0; c < 3; ++c) {
       if (columns[c] >= words.size())

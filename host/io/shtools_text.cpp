@@ -100,6 +100,11 @@ private:
       for (const std::string_view word : lines_.words) lines_.real(word); // a header, and one of its values is none
     if (metadata_.contains("cowgpu"))
       lines_.fail(Fault::file_syntax, fmt::format("l, m, C, S expected, found '{}'", shown(lines_.line)));
+    if (std::find(lines_.words.begin(), lines_.words.end(), "re") != lines_.words.end() &&
+        std::find(lines_.words.begin(), lines_.words.end(), "im") != lines_.words.end())
+      lines_.fail(Fault::file_format, fmt::format("complex coefficients, by '{}', which are not read from tables; .csv "
+                                                  "and .json can hold them",
+                                                  shown(lines_.line, 40)));
     if (text_lines_++ > 0) return;
     first_text_ = lines_.number;
     text_ = shown(lines_.line, 40);
@@ -159,7 +164,8 @@ private:
     rows_.push_back(row);
   }
 
-  // A header of whole numbers, "1 1 0 2", has the look of a row: it is one where its row comes again, and its lmax is right.
+  // A header of whole numbers, "1 1 0 2", has the look of a row: it is one where its row comes again or its degree lies above
+  // all others, and its lmax is right.
   void judge_first_row() {
     if (!header_.empty() || doubtful_.empty() || rows_.size() < 2) return;
     const RawRow first = rows_.front();
@@ -169,7 +175,7 @@ private:
       again = again || (rows_[i].l == first.l && rows_[i].m == first.m);
       lmax = std::max(lmax, rows_[i].l);
     }
-    if (!again || doubtful_[3] != lmax) return;
+    if ((!again && first.l <= lmax) || doubtful_[3] != lmax) return;
     rows_.erase(rows_.begin());
     header_ = doubtful_;
     header_line_ = first.line;
@@ -186,6 +192,10 @@ private:
                     fmt::format("{} words; a table with rows of negative orders has degree, order, value "
                                 "and perhaps its error",
                                 raw.words));
+      if (dov_ && raw.second < 0)
+        lines_.fail(Fault::file_syntax,
+                    "a fourth value below 0 in a table with rows of negative orders, where it is an error; complex "
+                    "coefficients are not read from tables, .csv and .json can hold them");
       if (!dov_ && raw.words < 4 && raw.m > 0)
         lines_.fail(Fault::file_truncated,
                     "S is missing; it may also stand in a row of order -m (degree, order, value), but "

@@ -128,6 +128,20 @@ std::optional<std::int64_t> to_integer(std::string_view word) {
   return value;
 }
 
+bool has_mixed_gaps(std::string_view line) {
+  constexpr std::string_view gaps = " \t\v\f\r,";
+  bool blanks = false, commas = false;
+  for (auto stop = line.find_first_of(gaps, line.find_first_not_of(gaps)); stop < line.size();) {
+    const auto next = line.find_first_not_of(gaps, stop);
+    if (next == std::string_view::npos) break;
+    const std::string_view gap = line.substr(stop, next - stop);
+    commas = commas || gap == ",";
+    blanks = blanks || gap.find(',') == std::string_view::npos;
+    stop = line.find_first_of(gaps, next);
+  }
+  return blanks && commas;
+}
+
 bool same_word(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
 }

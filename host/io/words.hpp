@@ -60,6 +60,10 @@ std::optional<double> to_number(std::string_view word);
 /// The word as an integer, held at the ends of the range if beyond it. Empty if the word is no integer.
 std::optional<std::int64_t> to_integer(std::string_view word);
 
+/// Whether words of the line are parted by a comma alone in one place and by blanks alone in another: "1,5 2,5". Such a comma may
+/// stand for a point.
+bool has_mixed_gaps(std::string_view line);
+
 /// Whether the words are the same but for the case of ASCII letters.
 bool same_word(std::string_view a, std::string_view b);
 
