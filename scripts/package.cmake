@@ -40,7 +40,7 @@ install(TARGETS libcowgpu EXPORT cowgpu-targets
 # Headers of what a caller uses; those of single paths and of third libraries stay inside.
 foreach(folder "" mesh/ map/ spectrum/ flow/ io/ physics/)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${folder}*.hpp)
-  list(FILTER headers EXCLUDE REGEX "/(flush_denormals|netcdf|quarter_turn|result_json|tinygltf|version)\\.hpp$")
+  list(FILTER headers EXCLUDE REGEX "/(far_field|flush_denormals|netcdf|quarter_turn|result_json|tinygltf|version)\\.hpp$")
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/${folder} COMPONENT development)
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/host/plan/bvh.hpp ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # held by classes of theirs

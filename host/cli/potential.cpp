@@ -6,6 +6,7 @@
 #include "host/io/coefficient_content.hpp"
 #include "host/io/potential_file.hpp"
 #include "host/number.hpp"
+#include "host/physics/far_field.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/plot/plot.hpp"

@@ -4,6 +4,7 @@
 #include "host/coefficients.hpp"
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
+#include "host/physics/polyhedron.hpp"
 #include "host/reference/potential.hpp"
 
 #include <Eigen/Core>
@@ -12,11 +13,6 @@
 #include <vector>
 
 namespace cowgpu::physics {
-
-/// Estimates of absolute errors of V, of its gradient (a norm) and of its second derivatives.
-struct FieldError {
-  long double value = 0, gradient = 0, hessian = 0;
-};
 
 /// The series of a body's moments about the middle of its box, which does not depend on the body's origin. The moments are
 /// summed in 80-bit arithmetic and rounded once, so that what is left of thin and hollow bodies is right too.

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/parallel.hpp"
+#include "host/physics/far_field.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

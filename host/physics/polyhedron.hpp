@@ -3,7 +3,6 @@
 
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
-#include "host/physics/far_field.hpp"
 #include "host/potential.hpp"
 #include "host/types.hpp"
 
@@ -27,6 +26,11 @@ struct PolyhedronAt {
   LongMatrix3 hessian = LongMatrix3::Zero(); ///< on a face the mean of both sides'; infinite on edges
   long double winding = 0; ///< of the surface about the point, -(trace of the hessian)/4 pi; on a face the mean
   bool on_edge = false;    ///< or on a vertex, where faces that meet there are not coplanar: the hessian leaves it out
+};
+
+/// Estimates of absolute errors of V, of its gradient (a norm) and of its second derivatives.
+struct FieldError {
+  long double value = 0, gradient = 0, hessian = 0;
 };
 
 /// R. A. Werner and D. J. Scheeres, Exterior gravitation of a polyhedron derived and compared with harmonic and mascon
