@@ -102,8 +102,8 @@ std::vector<std::string> sentences(const ErrorEstimate& estimate) {
     text.push_back(fmt::format("{} {} known to {:.1e} of {} norm or better{}", degree_word(good), degree_list(good),
                                good_worst, good.size() == 1 ? "its" : "their", worst(good, good_degree)));
   if (!poor.empty())
-    text.push_back(fmt::format("{} {} known to no better than 1e-6 of {} norm: to {:.0e}{}, because the shares of the "
-                               "triangles cancel; trust no more of their digits",
+    text.push_back(fmt::format("{} {} known to no better than 1e-6 of {} norm: to {:.0e}{}, by what cancels among the "
+                               "shares of the triangles or the cut-off leaves out; trust no more of their digits",
                                degree_word(poor), degree_list(poor), poor.size() == 1 ? "its" : "their", poor_worst,
                                poor.size() == 1 ? "" : fmt::format(" (worst: {})", poor_degree)));
   if (!lost.empty())
