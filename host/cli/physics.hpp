@@ -18,7 +18,7 @@ namespace cowgpu::cli {
 struct PhysicsOptions {
   BodyOptions body; ///< body.mesh is MESH|COEFFS
   std::string recipe = "default";
-  std::string brillouin_radius; ///< of a file that does not say it, as typed
+  std::string brillouin_radius; ///< as typed; for files that do not say it
   bool json = false;
   bool density_given = false; ///< by --density or the recipe
   bool paper() const { return recipe == "paper"; }

@@ -64,15 +64,15 @@ Units units_of(bool metric, bool charge) {
 struct Solved {
   Units units;
   PlaceFrame frame;
-  bool radius_known = true;    // of the sphere that holds the body
-  double reference_radius = 0; // of a file
+  bool radius_known = true;    // whether that of the sphere that holds the body is known
+  double reference_radius = 0; // where a file has one
   Places places;
   int lmax = 0;
   PotentialField field; // V; later in the units
   std::vector<std::uint8_t> exact;
   std::vector<double> density;                              // where exact
   std::size_t exact_points = 0, far_points = 0;             // by the polyhedron; where its series was better
-  double exact_error = 0;                                   // of both, estimated
+  double exact_error = 0;                                   // estimated, the largest of all points
   double nearest = std::numeric_limits<double>::infinity(); // point of the series, in radii
 };
 
