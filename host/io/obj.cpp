@@ -202,8 +202,8 @@ private:
       fail_syntax(fmt::format("a corner of face {} expected (v, v/vt, v//vn or v/vt/vn), found '{}'.", faces_found_,
                               shown(word)));
     const auto above = static_cast<std::int64_t>(mesh_.vertices.size());
-    const std::int64_t from_first = *value - base_;
-    if (*value >= 0 && from_first >= 0 && static_cast<std::uint64_t>(from_first) < vertex_count_)
+    const std::int64_t from_first = *value < 0 ? -1 : *value - base_;
+    if (from_first >= 0 && static_cast<std::uint64_t>(from_first) < vertex_count_)
       return static_cast<std::uint32_t>(from_first);
     if (*value < 0 && *value >= -above) return static_cast<std::uint32_t>(above + *value);
     const std::string number = shown(word.substr(0, slash));
