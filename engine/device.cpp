@@ -36,7 +36,7 @@ Device::Device(std::shared_ptr<Instance> instance, const PhysicalDevice& physica
 
 Device::~Device() {
   if (lost_) {
-    kernels_.clear(); // which leave what they made on it
+    kernels_.clear(); // kernels leave what they made on a lost device
     // The instance, and its log that the validation layer writes to, live as long as the device: to the end of the process.
     static auto* const left = new std::vector<std::shared_ptr<Instance>>;
     left->push_back(std::move(instance_));

@@ -23,10 +23,10 @@ constexpr double jump_angle = 0.05, jump_length = 0.02; // radians, diagonals
 struct Ray {
   Vec3 direction;
   double radius, low, high;
-  double width;         ///< of the bracket when it was last cut in its middle
+  double width;         ///< width of the bracket when it was last cut in its middle
   double reach = 0;     ///< about the last place: the ball of this radius does not meet the surface
   double last = 0;      ///< radius of that place
-  int side = 0;         ///< of it: 1 outside the body, -1 inside, 0 not known
+  int side = 0;         ///< side of that place: 1 outside the body, -1 inside, 0 not known
   std::uint32_t at = 0; ///< of the directions
 };
 
