@@ -22,9 +22,9 @@ struct KernelInfo {
   std::string name; ///< in errors and in the profile
   std::span<const std::uint32_t> spirv;
   std::uint32_t bindings = 0;           ///< buffers 0 ... bindings-1 of set 0
-  std::uint32_t push_bytes = 0;         ///< of push constants; at most 128
+  std::uint32_t push_bytes = 0;         ///< size of push constants; at most 128
   std::vector<std::uint32_t> constants; ///< specialization constants with ids 0, 1, 2 ...
-  std::vector<BindingKind> kinds = {};  ///< of the first bindings; the others are storage buffers
+  std::vector<BindingKind> kinds = {};  ///< kinds of the first bindings; the others are storage buffers
 };
 
 VkDescriptorType descriptor_type(BindingKind kind);

@@ -18,8 +18,8 @@ class Kernel;
 struct ClosestInput {
   std::span<const std::uint32_t> nodes;     ///< 16 words each, the root first
   std::span<const std::uint32_t> triangles; ///< 20 words each
-  float margin = 0;                         ///< of two distances, for coordinates up to 1
-  std::uint32_t iteration_budget = 60000;   ///< loop iterations an invocation may run in one dispatch
+  float margin = 0; ///< what two distances of single precision may be wrong by, for coordinates up to 1
+  std::uint32_t iteration_budget = 60000; ///< loop iterations an invocation may run in one dispatch
 };
 
 /// Four queries share a lane.

@@ -13,7 +13,7 @@ namespace cowgpu::engine {
 namespace {
 
 constexpr std::uint32_t width = 64;                             // points a workgroup
-constexpr std::uint32_t most_turns = 16, most_sheet_turns = 16; // of a point in one pass
+constexpr std::uint32_t most_turns = 16, most_sheet_turns = 16; // turns of a point in one pass
 constexpr std::uint64_t frame_bytes = 16 * FLOW_FRAME_TEXELS;
 
 static_assert(sizeof(FlowTask) == sizeof(shaders::FlowEntry) && sizeof(FlowPlace) == sizeof(shaders::FlowPoint));

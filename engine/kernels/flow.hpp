@@ -13,7 +13,7 @@ namespace cowgpu::engine {
 /// The surface, as shaders/flow.h lays it out.
 struct FlowInput {
   std::span<const double> frames;         ///< 22 numbers a face
-  std::span<const std::uint32_t> face_of; ///< of the search's triangles
+  std::span<const std::uint32_t> face_of; ///< face of each of the search's triangles
   std::uint32_t iteration_budget = 60000; ///< loop iterations an invocation may run in one dispatch
 };
 

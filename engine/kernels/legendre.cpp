@@ -15,7 +15,7 @@
 namespace cowgpu::engine {
 namespace {
 
-constexpr std::uint32_t block_pairs = 8; // of the plan
+constexpr std::uint32_t block_pairs = 8; // pairs in a block of the plan
 constexpr double batch_work = 4e9;       // multiply-adds of a dispatch, so that stops are answered within a second
 
 std::vector<BindingKind> binding_kinds() {

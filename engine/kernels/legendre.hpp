@@ -41,7 +41,7 @@ struct LegendreInput {
   int lmax = 0;
   int polar_pairs = 0;                 ///< a multiple of 8, as the number of pairs
   std::span<const double> t;           ///< [pair]
-  std::span<const std::size_t> offset; ///< of each order in a, b, b_polar
+  std::span<const std::size_t> offset; ///< where each order begins in a, b, b_polar
   std::span<const double> a, b, b_polar;
   std::span<const std::uint32_t> start; ///< [group][block]
   std::span<const double> seeds;        ///< [m][block][2][8]
@@ -52,7 +52,7 @@ struct LegendreSizes {
   LegendreSizes(const LegendreShape& shape, int lmax);
   std::uint32_t groups = 0;
   std::uint32_t columns = 0;             ///< groups * lanes: orders with padding
-  std::vector<std::uint64_t> first_step; ///< of each group; groups + 1 entries
+  std::vector<std::uint64_t> first_step; ///< first step of each group; groups + 1 entries
   std::uint64_t series_doubles(std::uint32_t fields) const { return first_step.back() * fields * 4 * lanes; }
   std::uint32_t lanes = 0;
 };

@@ -29,7 +29,7 @@ struct MomentsInput {
   int column_scale = 1;                        ///< 1 or 2
   int start_exponent = 0;                      ///< rows start at 2^start_exponent
   std::span<const double> pairs;               ///< MOMENTS_INPUTS of each pair: [group][input][lane]
-  std::span<const std::uint32_t> last_degrees; ///< of each group, from the largest down
+  std::span<const std::uint32_t> last_degrees; ///< last degree of each group, from the largest down
 };
 
 /// Bytes the kernels need on the device for `groups` groups.

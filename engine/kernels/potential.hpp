@@ -47,7 +47,7 @@ public:
   static std::uint64_t device_bytes(std::uint32_t top, std::uint32_t sets, std::uint64_t lanes);
 
 private:
-  struct Range { // of orders, one dispatch
+  struct Range { // a range of orders, one dispatch
     std::uint32_t first, end;
     std::uint64_t offset, bytes;
   };

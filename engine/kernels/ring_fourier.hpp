@@ -27,10 +27,10 @@ struct RingFourierShape {
 };
 
 struct RingFourierInput {
-  int points = 1;                 ///< of a ring
+  int points = 1;                 ///< points of a ring
   int orders = 1;                 ///< m = 0 ... orders - 1, 2 orders - 1 <= points
   std::span<const double> x;      ///< cos theta of each pair
-  std::span<const double> weight; ///< of each pair
+  std::span<const double> weight; ///< weight of each pair
 };
 
 /// Radices of the passes for rings of so many points, the fast ones first.
