@@ -51,13 +51,13 @@ struct DeviceFacts {
   std::uint64_t memory = 0;         ///< bytes of the largest device-local heap (0: not known)
   std::uint64_t largest_buffer = 0; ///< bytes one shader binding may span (0: no limit)
   std::uint32_t shared_memory = 0;  ///< bytes of memory shared by a workgroup
-  unsigned threads = 1;             ///< of the CPU path
+  unsigned threads = 1;             ///< threads of the CPU path
 };
 
 /// What a verb did, beside its result.
 struct RunReport {
   double seconds = 0;              ///< wall time of the verb
-  double setup_seconds = 0;        ///< of that: planning, pairing, sorting on the host
+  double setup_seconds = 0;        ///< the part of `seconds` for planning, pairing, sorting on the host
   double elements = 0;             ///< (l, m) entries evaluated, summed over pairs of triangles
   double full_elements = 0;        ///< the same without the cut-off
   std::uint64_t pairs = 0;         ///< pairs (and leftover single triangles) of the plan

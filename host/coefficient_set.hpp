@@ -39,7 +39,7 @@ struct Provenance {
   std::string created;     ///< UTC, ISO 8601
   std::string command;     ///< as typed
   std::string mesh;        ///< name
-  std::string mesh_sha256; ///< of the mesh's file
+  std::string mesh_sha256; ///< hash of the mesh's file
   std::string history;     ///< the commands that converted it since, separated by "; "
 };
 
@@ -60,13 +60,13 @@ struct CoefficientSet {
   /// Radius of the sphere about `origin` that holds the body, in the length unit: outside it the series is the potential. It
   /// says what R, which any number may be, does not. Empty: not known, as of files of other programs.
   std::optional<double> brillouin_radius;
-  std::optional<Vec3> origin;         ///< of multipoles, potentials and surfaces, in mesh coordinates
+  std::optional<Vec3> origin;         ///< origin of multipoles, potentials and surfaces, in mesh coordinates
   std::string origin_kind;            ///< "centre of mass", "mesh", "given", or empty
   std::string length_unit, mass_unit; ///< "m", "kg"; the two above; empty: not known
   std::optional<double> density, mass;
   std::optional<double> second_moment;          ///< integral of density r^2 about `origin`, in the units above
   std::optional<double> gravitational_constant; ///< G that went into gm, in the units above and seconds
-  std::optional<double> gm;                     ///< of potentials
+  std::optional<double> gm;                     ///< G M of potentials
   Provenance provenance;
   std::vector<std::pair<std::string, std::string>> remarks; ///< what else the file says: a word, and a text
 

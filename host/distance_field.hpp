@@ -18,7 +18,7 @@ struct SurfaceFeature {
   enum class Kind : std::uint8_t { vertex, edge, face };
   Kind kind = Kind::face;
   std::uint32_t first = 0;  ///< the vertex; of an edge its lower vertex; the face
-  std::uint32_t second = 0; ///< of an edge its higher vertex, else as `first`
+  std::uint32_t second = 0; ///< an edge's higher vertex, else as `first`
 
   bool operator==(const SurfaceFeature&) const = default;
 };
@@ -30,8 +30,8 @@ std::string_view name(SurfaceFeature::Kind kind);
 struct SurfacePoint {
   double distance = 0;             ///< from the query, not negative
   Vec3 point = Vec3::Zero();       ///< mesh coordinates
-  std::uint32_t face = 0;          ///< of the faces that hold `feature`, the least
-  Vec3 barycentric = Vec3::Zero(); ///< of `point` in `face`, not negative; exact zeros off the feature
+  std::uint32_t face = 0;          ///< the least of the faces that hold `feature`
+  Vec3 barycentric = Vec3::Zero(); ///< coordinates of `point` in `face`, not negative; exact zeros off the feature
   SurfaceFeature feature;
 };
 
@@ -50,7 +50,7 @@ struct ClosestPoints {
   std::vector<std::uint32_t> face;     ///< as SurfacePoint has them
   std::vector<Vec3> barycentric;       //
   std::vector<SurfaceFeature> feature; //
-  std::vector<std::int32_t> winding;   ///< of the surface about the query; empty without sign
+  std::vector<std::int32_t> winding;   ///< winding number of the surface about the query; empty without sign
 
   std::size_t size() const { return distance.size(); }
 };
@@ -58,7 +58,7 @@ struct ClosestPoints {
 /// What a call took, beside its result.
 struct ClosestReport {
   double seconds = 0;              ///< wall time of the call
-  double sort_seconds = 0;         ///< of that: the order of the queries
+  double sort_seconds = 0;         ///< the part of `seconds` that ordered the queries
   std::uint64_t rays = 0;          ///< queries whose winding number took a ray (the others share a neighbour's)
   std::vector<KernelTime> kernels; ///< empty on the CPU path
 };

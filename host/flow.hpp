@@ -43,8 +43,8 @@ struct FlowPoints {
   std::vector<Vec3> positions;        ///< at the end
   std::vector<double> distances;      ///< d there, signed
   std::vector<std::uint32_t> faces;   ///< a nearest face there
-  std::vector<std::uint8_t> flags;    ///< of FlowFlag
-  std::vector<double> slide_times;    ///< of first reaching the medial axis; infinite if never
+  std::vector<std::uint8_t> flags;    ///< bits of FlowFlag
+  std::vector<double> slide_times;    ///< times of first reaching the medial axis; infinite if never
   std::vector<Vec3> slide_places;     ///< where that was
   std::vector<std::uint32_t> queries; ///< nearest-face queries spent
   /// Path of start i: corners first[i] ... first[i + 1] - 1 of path and path_times. Empty if not asked for.
@@ -60,9 +60,9 @@ struct FlowReport {
   double first_slide = std::numeric_limits<double>::infinity(), median_slide = 0; ///< times of reaching the axis
   Vec3 slide_low = Vec3::Zero(), slide_high = Vec3::Zero(); ///< box round the places where slides start
   double seconds = 0;
-  std::uint64_t passes = 0;         ///< of the device over all points on their way; 0 on the CPU path
-  std::uint64_t device_queries = 0; ///< of the queries those that the device answered
-  std::uint64_t device_moves = 0;   ///< of the answers those from which the device took the point on
+  std::uint64_t passes = 0;         ///< passes of the device over all points on their way; 0 on the CPU path
+  std::uint64_t device_queries = 0; ///< the queries that the device answered
+  std::uint64_t device_moves = 0;   ///< the answers from which the device took the point on
   std::vector<KernelTime> kernels;  ///< empty on the CPU path
 };
 

@@ -20,7 +20,7 @@ struct SphereDirections {
     return {sine[i] * cosine_phi[k], sine[i] * sine_phi[k], cosine[i]};
   }
 
-  std::vector<double> sine, cosine;         ///< of theta, one a ring
+  std::vector<double> sine, cosine;         ///< sine and cosine of theta, one a ring
   std::vector<double> cosine_phi, sine_phi; ///< one a longitude
 };
 

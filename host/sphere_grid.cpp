@@ -170,7 +170,7 @@ void driscoll_healy(SphereGrid& grid) {
 // integrate polynomials in cos theta of degree n - 1, and are symmetric.
 void fejer(SphereGrid& grid) {
   const int n = grid.rings;
-  const std::vector<Real> c = cosines(2 * n); // of pi i / 2n
+  const std::vector<Real> c = cosines(2 * n); // cosines of pi i / 2n
   for (int i = 0; i < n; ++i) set_ring(grid, i, c[std::size_t(2 * i + 1)], sine_of(2 * i + 1, 2 * n));
   const auto period = std::size_t(4) * std::size_t(n);
   parallel_for(0, std::size_t((n + 1) / 2), [&](std::size_t i, unsigned) {

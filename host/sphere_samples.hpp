@@ -12,7 +12,7 @@ namespace cowgpu {
 struct SphereSamples {
   int rings = 0, ring_length = 0;
   std::vector<std::uint32_t> faces;           ///< face index
-  std::vector<std::array<double, 3>> weights; ///< of the face's corners, in its order; not negative, sum 1
+  std::vector<std::array<double, 3>> weights; ///< weights of the face's corners, in its order; not negative, sum 1
   std::uint64_t faces_hit = 0;                ///< different faces among `faces`
   std::uint64_t folded_points = 0;            ///< points inside (edges left out) more than one triangle
   std::uint64_t edge_points = 0;              ///< points exactly on an edge or a corner of their triangle

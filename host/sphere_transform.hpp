@@ -17,8 +17,8 @@ inline constexpr int most_fields = 64;
 /// What a call took, beside its result.
 struct TransformReport {
   double seconds = 0;              ///< wall time of the call
-  double legendre_seconds = 0;     ///< of that: the Legendre stage (on Vulkan: its kernels)
-  double fourier_seconds = 0;      ///< of that: the ring transforms with folding
+  double legendre_seconds = 0;     ///< the part of `seconds` in the Legendre stage (on Vulkan: its kernels)
+  double fourier_seconds = 0;      ///< the part of `seconds` in the ring transforms with folding
   double legendre_flops = 0;       ///< done by the Legendre stage; a multiply-add counts two
   double fourier_flops = 0;        ///< 5 n log2 n a pair of rings (one complex transform)
   std::vector<KernelTime> kernels; ///< empty on the CPU path
