@@ -19,7 +19,7 @@ struct BodyOptions {
   std::string length_unit, length, axes, rotate;
   bool charge = false;            ///< densities are of charge: C/m3 where metric
   std::vector<std::string> parts; ///< FILE=DENSITY each
-  Mending mending;                ///< of MESH, before it is placed
+  Mending mending;                ///< what mends MESH, before it is placed
 };
 
 /// Adds MESH, --origin, --density, --length-unit, --length, --axes, --rotate, --part and those of mend_options.hpp.

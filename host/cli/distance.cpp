@@ -20,7 +20,7 @@
 namespace cowgpu::cli {
 namespace {
 
-constexpr double enlargement = 1.1; // of the box that --grid fills
+constexpr double enlargement = 1.1; // factor of the box that --grid fills
 
 struct Options {
   std::string mesh = "builtin:cow", points, output;

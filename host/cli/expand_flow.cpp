@@ -120,7 +120,7 @@ MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, int lmax, st
     // A grid of its own: positions, the six fields, and a batch of rays.
     MemoryNeed need = backend.distance_field_memory(vertices, faces, std::uint64_t(1) << 18);
     need.host += grid_points(std::max(choice.grid_degree, surface_grid_degree(lmax))) * 9 * sizeof(double);
-    need.host += 3 * coefficients; // of the three grids
+    need.host += 3 * coefficients; // coefficients on the three grids
     return need;
   }
   // Paths and positions of the finest vertices, its faces, and caps of these.

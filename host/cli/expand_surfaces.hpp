@@ -17,13 +17,13 @@ struct FlowChoice {
   bool sheets = false; ///< signed sheets instead of the level set
   /// Least degree of the grid that a level set is met on: its sutures cut the fields, so that errors fall slowly.
   int grid_degree = 1024;
-  int refinements = 3; ///< of the mesh, for sheets and the paper's recipe
+  int refinements = 3; ///< refinements of the mesh, for sheets and the paper's recipe
 };
 
 /// What --of, --recipe and --lmax ask for.
 struct ExpansionChoice {
   bool mass = false;
-  std::vector<std::string> maps; ///< of "harmonic", "stretch", "smooth", "flow", in this order, each once
+  std::vector<std::string> maps; ///< some of "harmonic", "stretch", "smooth", "flow", in this order, each once
   bool paper = false;            ///< the harmonic map and the flow by the paper's recipe
   std::string map_file;          ///< a PLY file instead of making the one map, or empty
   int lmax = 0;

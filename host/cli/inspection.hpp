@@ -18,8 +18,8 @@ struct Inspection {
   RawMesh mesh;
   Audit audit;
   std::string moments = "yes", maps = "yes";      ///< which of the two types it satisfies, or the reason why not
-  std::optional<SelfIntersections> intersections; ///< of finite meshes with faces
-  std::optional<Overlap> overlap;                 ///< of closed, consistently oriented ones whose pairs are all known
+  std::optional<SelfIntersections> intersections; ///< faces that cross; known for finite meshes with faces
+  std::optional<Overlap> overlap; ///< volume wound twice, of closed, oriented meshes whose pairs are all known
   // The radii are missing too where not all pairs are known.
   std::optional<double> brillouin_radius;  ///< about the centre of mass
   std::optional<double> inscribed_radius;  ///< about the centre of mass, if that lies inside

@@ -28,8 +28,8 @@ struct PlaceFrame {
 struct Places {
   std::string name;               ///< "sphere of radius 2"
   std::vector<Vec3> points;       ///< in the body's coordinates
-  std::optional<SphereGrid> grid; ///< of a sphere, its points ring by ring
-  double radius = 0;              ///< of that
+  std::optional<SphereGrid> grid; ///< grid of a sphere, its points ring by ring
+  double radius = 0;              ///< radius of that sphere
 };
 
 /// How many points they will be, before any is made; 0 where a file says.

@@ -32,7 +32,7 @@ struct Outcome {
   MemoryNeed memory;
   std::string note;
   double setup_seconds = 0;
-  TransformReport synthesis, analysis; // of the run with the median time
+  TransformReport synthesis, analysis; // reports of the run with the median time
   CoefficientError error;
   double bound = 0;
 

@@ -15,7 +15,7 @@ namespace cowgpu::cli {
 /// What a surface is called in names of files.
 struct OutputKey {
   std::string text; ///< in the place of {}
-  std::string stem; ///< of its file in a folder
+  std::string stem; ///< stem of its file's name in a folder
 };
 
 class SurfaceOutputs {

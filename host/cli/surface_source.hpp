@@ -16,18 +16,18 @@ struct SurfaceChoice {
   std::string input; ///< a mesh, or a result file (FILE.json)
   std::string of;    ///< a map's name, or ""; see load_surface()
   std::string mesh;  ///< the mesh beside a result file, or ""
-  int lmax = -1;     ///< of a mesh's expansion; below 0: enough for every order, and default_lmax at least
+  int lmax = -1;     ///< degree of a mesh's expansion; below 0: enough for every order, and default_lmax at least
 };
 
 /// Degrees beyond the orders that are rebuilt cost little, and the finer grid keeps aliasing out of them.
 inline constexpr int default_lmax = 64;
 
 struct SurfaceSource {
-  std::string name; ///< of the expansion: "stretch"
+  std::string name; ///< name of the expansion: "stretch"
   SurfaceExpansion expansion;
   std::string recipe, map_method;
   std::string mesh, mesh_hash; ///< name and SHA-256 of the mesh that was expanded
-  Placement placement;         ///< of that mesh, before it was expanded
+  Placement placement;         ///< placement of that mesh, before it was expanded
   std::optional<Body> body;    ///< where the mesh is known; density 1
   std::vector<std::string> notes;
 };

@@ -18,8 +18,8 @@ struct TipChoice {
   std::string of;                  ///< a map, or an expansion of a file; "": stretch
   std::string fields = "xyz";
   std::string mesh;   ///< the true body beside coefficients
-  int lmax = -1;      ///< of a mesh's expansion; below 0: enough for the orders
-  int resolution = 0; ///< of rebuilt bodies; 0: tip_resolution()
+  int lmax = -1;      ///< degree of a mesh's expansion; below 0: enough for the orders
+  int resolution = 0; ///< degree of the grid of rebuilt bodies; 0: tip_resolution()
   bool paper = false; ///< spherical cow beside the paper
 };
 

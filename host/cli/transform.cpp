@@ -39,7 +39,7 @@ struct Run {
   const SphereGrid* grid = nullptr;
   int lmax = 0;
   std::vector<std::string> names, notes;
-  Convention convention; // of the coefficients in the file
+  Convention convention; // convention of the coefficients in the file
   DeviceFacts device;
   TransformReport report;
   double read_seconds = 0, setup_seconds = 0, write_seconds = 0;
