@@ -20,7 +20,7 @@ constexpr double same_point = 1e-6;
 
 constexpr double near_share = 1e3; // a length of 1e-3 diagonals and more is not next to the surface
 
-constexpr int most_rounds = 2000; // of steps as long as the distance
+constexpr int most_rounds = 2000; // rounds of steps as long as the distance
 
 // shaders/flow.comp does the same operations in the same order.
 double norm(const Vec3& a) {

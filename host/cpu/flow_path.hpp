@@ -38,9 +38,9 @@ struct FlowDeparture {
   enum class Asks { lift, ray, last } asks = Asks::last; ///< what the query is for
   Vec3 place = Vec3::Zero();
   double time = 0;
-  Vec3 foot = Vec3::Zero(), normal = Vec3::Zero(); ///< of the ball about the query, but for `last`
-  double distance = 0, radius = 0;                 ///< of the place from the foot; of the ball
-  std::uint32_t face = 0;                          ///< of the foot
+  Vec3 foot = Vec3::Zero(), normal = Vec3::Zero(); ///< foot and normal of the ball about the query, but for `last`
+  double distance = 0, radius = 0;                 ///< distance of the place from the foot; radius of the ball
+  std::uint32_t face = 0;                          ///< face of the foot
   bool inside = false;                             ///< it ended before it came out of the body
   std::uint32_t rounds = 0;
 };
@@ -114,10 +114,10 @@ private:
   /// A ball that shrinks until it is empty.
   struct Ball {
     Vec3 foot, normal;
-    double distance = 0;    ///< of x from the foot
-    double radius = 0;      ///< of the ball; not less than distance in the end
+    double distance = 0;    ///< distance of x from the foot
+    double radius = 0;      ///< radius of the ball; not less than distance in the end
     double limit = 0;       ///< radius at the end of time
-    std::uint32_t face = 0; ///< of the foot
+    std::uint32_t face = 0; ///< face of the foot
     std::uint32_t hit = 0;  ///< nearest to the centre of the ball before
     Vec3 touched;           ///< its point
     int rounds = 0;

@@ -25,7 +25,7 @@ public:
 
   const plan::ClosestTree& tree() const { return tree_; }
   std::size_t faces() const { return normals_.size(); }
-  double diagonal() const { return diagonal_; }                           ///< of the bounding box
+  double diagonal() const { return diagonal_; }                           ///< diagonal of the bounding box
   const Vec3& normal(std::uint32_t face) const { return normals_[face]; } ///< outwards; zero for a face without area
 
   const plan::TriangleFrame<double>& frame(std::uint32_t face) const { return frames_[face]; }

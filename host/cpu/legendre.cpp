@@ -41,7 +41,7 @@ struct Rows {
   const double *a, *b, *t, *x;
   const std::uint32_t* start;
   const double* seeds; // [block][2][pairs]
-  std::size_t blocks;  // of the plan
+  std::size_t blocks;  // blocks of the plan
   std::uint32_t segments;
 
   std::uint32_t start_of(std::size_t vector) const { return start[vector / parts]; }
@@ -319,7 +319,7 @@ void AnalyseOne(const plan::Legendre& plan, const plan::Seeds& seeds, int m, con
   const auto segments = std::uint32_t(plan.padded_steps(m) / int(segment));
   constexpr auto chunk_segments = std::uint32_t(chunk_steps / segment);
   const std::size_t blocks = std::size_t(plan.blocks);
-  const std::uint32_t start = std::min(segments, seeds.start[(std::size_t(m) + 1) * blocks - 1]); // of the equator
+  const std::uint32_t start = std::min(segments, seeds.start[(std::size_t(m) + 1) * blocks - 1]); // the equator's
   double *chunk = work.chunk.get(), *sums = work.sums.get();
   std::memset(sums, 0, start * segment * 4 * sizeof(double));
   for (std::uint32_t begin = start; begin < segments; begin += chunk_segments) {
@@ -403,7 +403,7 @@ void legendre_analysis(const plan::Legendre& plan, const plan::Seeds& seeds, int
                        LegendreWork& work, std::complex<double>* coefficients, std::size_t stride) {
   const std::size_t count = std::size_t(plan.lmax - m) + 1, steps = std::size_t(plan.padded_steps(m));
   double* sums = work.sums.get();
-  std::size_t columns = 4; // of a tile
+  std::size_t columns = 4; // columns of a tile
   if (fields == 1)
     HWY_DYNAMIC_DISPATCH(AnalyseOne)(plan, seeds, m, cells, work);
   else

@@ -144,7 +144,7 @@ void sweeps(const Directions& g, int last, double* rows, const double* phases, d
     w.level[0][0] = load_column(row);
     w.level[0][1] = load_column(row + column_doubles);
     row += column_doubles;
-    const double* phase = phases + 4 * lanes * levels; // of ix = 1
+    const double* phase = phases + 4 * lanes * levels; // phases of ix = 1
     double* q = sums + layout.offset[std::size_t(n)] + 2 * levels;
     const int end = first + 3 * levels - 2;
     for (int ix = 1; ix <= end; ix += 3) {

@@ -23,7 +23,7 @@ struct PartialLayout {
   std::size_t sweeps() const { return offset.size() - 1; }
   std::size_t size() const { return offset.back(); } ///< doubles
 
-  std::vector<std::size_t> offset; ///< of each sweep, and the end
+  std::vector<std::size_t> offset; ///< where each sweep begins, and the end
 };
 
 /// Rows and phases of one group; reused from group to group.

@@ -21,7 +21,7 @@ struct RingFourier {
 
   struct Pass {
     int radix;
-    int length;                  ///< of the transforms it begins: radix times what is left
+    int length;                  ///< length of the transforms it begins: radix times what is left
     int stride;                  ///< the product of the radices before
     std::vector<double> twiddle; ///< [p][k-1][2] = exp(-2 pi i p k / length), p < length / radix, 0 < k < radix
     std::vector<double> circle;  ///< [j][2] = cos and sin of 2 pi j / radix; empty for the radices above
