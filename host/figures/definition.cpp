@@ -13,7 +13,7 @@ constexpr double degree = M_PI / 180;
 
 struct Shown {
   double phi = 0, image = 0; ///< azimuths, the image's within 180 degrees of phi
-  double distance = 0;       ///< of the image from the origin
+  double distance = 0;       ///< distance of the image from the origin
 };
 
 /// The vertex that shows best what f is: about 35 degrees from where it comes from, far out, near the plane.

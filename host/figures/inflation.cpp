@@ -12,7 +12,7 @@ namespace {
 
 constexpr double panel = 190, gap = 36, margin = 26, foot = 20;
 constexpr int pixels = 3;                 // a point
-constexpr std::array levels = {0.1, 3.0}; // of the diagonal
+constexpr std::array levels = {0.1, 3.0}; // parts of the diagonal
 constexpr int cells = 224;
 
 } // namespace
