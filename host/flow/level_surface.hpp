@@ -10,7 +10,7 @@ struct LevelSurfaceReport {
   double cell = 0;             ///< side of the lattice's cubes
   std::uint64_t cubes = 0;     ///< that were cut into tetrahedra
   std::uint64_t queries = 0;   ///< closest points asked for
-  double largest_residual = 0; ///< of |d - level| over the vertices
+  double largest_residual = 0; ///< largest |d - level| over the vertices
   /// By points scattered in the cubes that the level may pass: the volume within the level and what chance leaves of it (three
   /// standard deviations), and of that the volume which corners do not show, in cubes with all of them on one side.
   double sampled_volume = 0, sampled_chance = 0, missed = 0;
@@ -32,7 +32,7 @@ TriangleSurface level_surface(DistanceField& field, const Vec3& low, const Vec3&
 
 /// What the volume and the area of such a surface are off by.
 struct LevelSurfaceError {
-  double volume = 0, area = 0; ///< of the triangles, before errors
+  double volume = 0, area = 0; ///< sums over the triangles, before errors
   double volume_error = 0, area_error = 0;
 };
 

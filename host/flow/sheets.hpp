@@ -9,8 +9,8 @@
 namespace cowgpu {
 
 struct SheetReport {
-  std::uint64_t faces = 0, flipped_faces = 0, flat_faces = 0; ///< of the mapped triangles; flipped: det(a, b, c) < 0
-  std::uint64_t points = 0, folded_points = 0;                ///< of the grid; in more than one triangle
+  std::uint64_t faces = 0, flipped_faces = 0, flat_faces = 0; ///< mapped triangles; flipped: det(a, b, c) < 0
+  std::uint64_t points = 0, folded_points = 0;                ///< grid points; folded: in more than one triangle
   std::uint32_t most_sheets = 0;                              ///< over one point
   /// Smallest and largest sum of signs over one point: the degree of the map, the same everywhere, 1 for a flow off a body
   /// with one outer shell that keeps clear of the origin.

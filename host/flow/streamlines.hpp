@@ -43,7 +43,7 @@ std::vector<CutLoop> cut_by_plane(std::span<const Vec3> vertices, std::span<cons
 /// Where streamlines start, and the way they leave.
 struct StreamlineStarts {
   std::vector<Vec3> places, normals;
-  std::vector<std::uint32_t> loops; ///< of the cut; empty for vertices
+  std::vector<std::uint32_t> loops; ///< loop of the cut that each place lies on; empty for vertices
 };
 
 /// `count` starts along the loops, as evenly as whole numbers on each allow, the first half a spacing from a loop's first
