@@ -251,7 +251,7 @@ private:
   std::vector<std::uint32_t> asking_; // those of queries_
   std::vector<Vec3> queries_;
   std::size_t room_ = 0;
-  std::size_t next_ = 0;   // of the call's order
+  std::size_t next_ = 0;   // the next point in the call's order
   std::size_t passes_ = 0; // since the last start
 };
 

@@ -94,7 +94,7 @@ private:
   const plan::RenderedPanel& panel_;
   std::vector<Triangle> triangles_; ///< until the device has them
   engine::Render render_;
-  std::vector<Part> parts_; ///< of the batch
+  std::vector<Part> parts_; ///< parts of the batch
   std::size_t count_ = 0;
 };
 

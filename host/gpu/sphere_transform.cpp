@@ -156,7 +156,7 @@ private:
 
   std::shared_ptr<engine::Gpu> gpu_;
   plan::Legendre plan_; // without what was uploaded
-  double steps_ = 0;    // of the recurrence, one transform
+  double steps_ = 0;    // steps of the recurrence in one transform
   std::unique_ptr<engine::SphereTransform> engine_;
 };
 
@@ -185,7 +185,7 @@ MemoryNeed sphere_transform_memory(const engine::GpuFacts& facts, const engine::
   const std::uint64_t pairs =
       std::uint64_t(grid.rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs * plan::block_pairs;
   const std::uint64_t orders = std::uint64_t(lmax) + 1;
-  const std::uint64_t steps = orders * (orders / 4 + plan::step_multiple + 1); // of all orders, with padding
+  const std::uint64_t steps = orders * (orders / 4 + plan::step_multiple + 1); // steps of all orders, with padding
   MemoryNeed need;
   if (grid.shift != 0) need.host += 16 * std::uint64_t(fields) * SphereCoefficients::count(lmax);
   need.host += 48 * steps + 48 * orders + 64 * pairs + orders * pairs * 17 + (std::uint64_t(1) << 20);
