@@ -57,7 +57,7 @@ private:
   bool through_ = false;  // written straight through
   std::string buffer_;
   int fd_ = -1;
-  mode_t mode_ = 0; // of the whole file
+  mode_t mode_ = 0; // mode of the whole file
 };
 
 } // namespace cowgpu

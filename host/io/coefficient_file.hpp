@@ -36,7 +36,7 @@ namespace cowgpu {
 /// What a coefficient file holds, as complex orthonormal coefficients.
 struct CoefficientFile {
   SphereCoefficients coefficients;
-  Convention convention;          ///< of the file; what is held here is complex and orthonormal always
+  Convention convention;          ///< convention of the file; what is held here is complex and orthonormal always
   std::vector<std::string> names; ///< one a field, empty where the file gives none
   std::vector<std::string> notes; ///< sentences: what was left out, what the coefficients are
 };

@@ -20,7 +20,7 @@ public:
   bool next();
   std::string_view line;
   std::vector<std::string_view> words;
-  std::size_t number = 0;    ///< of the line, from 1
+  std::size_t number = 0;    ///< number of the line, from 1
   bool unterminated = false; ///< the line is the file's last one and has no end: it may be a part of one
 
   /// A finite number, its exponent after E, e, D or d; nothing for another word.

@@ -18,12 +18,12 @@ struct CsvTable {
     std::size_t line = 0;
   };
 
-  std::string name;                            ///< of the file
-  std::map<std::string, Attribute> attributes; ///< of lines "# key value"; the first of several counts
+  std::string name;                            ///< name of the file
+  std::map<std::string, Attribute> attributes; ///< values of lines "# key value"; the first of several counts
   std::vector<std::string> columns;
   std::vector<double> values; ///< row after row
   std::size_t header_line = 0;
-  std::size_t first_line = 0; ///< of the rows, which have no gaps
+  std::size_t first_line = 0; ///< line of the first row; the rows have no gaps
 
   std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
   double at(std::size_t row, std::size_t column) const { return values[row * columns.size() + column]; }

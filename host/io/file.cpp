@@ -16,7 +16,7 @@ namespace cowgpu {
 namespace {
 
 constexpr std::size_t chunk = std::size_t{1} << 16;
-constexpr std::size_t endless = std::size_t{1} << 30; // of a pipe or a device
+constexpr std::size_t endless = std::size_t{1} << 30; // most bytes of a pipe or a device
 
 [[noreturn]] void fail(const std::filesystem::path& path, int reason) {
   throw Error(Fault::cannot_read,

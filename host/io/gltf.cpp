@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t deepest_node = 1000;
-constexpr std::uint64_t spare_bytes = std::uint64_t{32} << 20; // of the mesh, beyond 4 times the file
+constexpr std::uint64_t spare_bytes = std::uint64_t{32} << 20; // bytes for the mesh, beyond 4 times the file
 constexpr std::uint64_t most_primitives = 1000000;             // with their instances; each counts up to three times
 
 enum Mode : std::uint64_t { points = 0, lines = 1, line_loop = 2, line_strip = 3, triangles = 4, strip = 5, fan = 6 };
@@ -160,7 +160,7 @@ private:
     const Size size = size_of(index, named_by);
     part.vertices.reserve(size.vertices);
     part.faces.reserve(size.faces);
-    std::map<std::uint64_t, std::uint32_t> first_vertex; // of each accessor of positions
+    std::map<std::uint64_t, std::uint32_t> first_vertex; // first vertex of each accessor of positions
     const Json& primitives = document_.list(object, "primitives", what);
     for (std::size_t p = 0; p < primitives.size(); ++p)
       add_primitive(part, first_vertex, primitives[p], primitive_name(what, p));
@@ -347,8 +347,8 @@ private:
   GltfDocument document_;
   const std::uint64_t most_bytes_;
   RawMesh mesh_;
-  std::map<std::uint64_t, Size> sizes_; // of meshes
-  Size total_;                          // of all instances, before welding
+  std::map<std::uint64_t, Size> sizes_; // sizes of meshes
+  Size total_;                          // size of all instances, before welding
   bool closed_ = true;                  // every instance by itself
   bool targets_ = false;
   std::size_t welded_ = 0, collapsed_ = 0, mirrored_ = 0, skinned_ = 0;

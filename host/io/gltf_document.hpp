@@ -95,7 +95,7 @@ private:
   nlohmann::json root_;
   bool has_chunk_ = false;
   std::string_view chunk_;                          // the GLB's binary part
-  std::vector<std::optional<std::string>> decoded_; // of each buffer, once it is asked for
+  std::vector<std::optional<std::string>> decoded_; // bytes of each buffer, once it is asked for
 };
 
 } // namespace cowgpu

@@ -19,15 +19,15 @@
 namespace cowgpu {
 namespace {
 
-constexpr double degrees_tolerance = 1e-6, single_tolerance = 4e-5; // of doubles, and of floats up to 360
-constexpr double repeat_tolerance = 1e-9; // of the largest value: a column at 360 E against that at 0
+constexpr double degrees_tolerance = 1e-6, single_tolerance = 4e-5; // tolerance of doubles, and of floats up to 360
+constexpr double repeat_tolerance = 1e-9; // part of the largest value: a column at 360 E against that at 0
 constexpr std::size_t most_rings = 2 * largest_grid_degree + 3, longest_ring = 8 * largest_grid_degree + 1;
 
 // A grid as it stands in the file.
 struct Raw {
-  std::string name;               // of the file
+  std::string name;               // name of the file
   std::vector<double> lats, lons; // degrees
-  std::vector<std::string> names; // of the fields
+  std::vector<std::string> names; // names of the fields
   std::optional<GridKind> kind;   // as the file says
   bool either_dh = false;         // it says DH, and the shape tells which
   double tolerance = degrees_tolerance;
@@ -49,8 +49,8 @@ bool near(double a, double b, double tolerance = degrees_tolerance) {
 struct Cut {
   bool turned = false;              // rings from south to north
   std::size_t skipped = 0;          // first row of the file that counts
-  std::vector<std::size_t> columns; // of the file, from longitude 0 eastwards
-  double first_longitude = 0;       // of the first of them, in degrees
+  std::vector<std::size_t> columns; // columns of the file, from longitude 0 eastwards
+  double first_longitude = 0;       // longitude of the first column, in degrees
   std::optional<std::size_t> extra; // the file's last column, which repeats its first
 };
 

@@ -15,7 +15,7 @@ struct KnownBody {
   const char* name;
   double radius; // km, as gravity fields refer to it
   double gm;     // km^3/s^2
-  bool small;    // of no round shape: reference radii differ, and GM is known to some percent
+  bool small;    // a body of no round shape: reference radii differ, and GM is known to some percent
 };
 
 // GM: JPL's DE440 and satellite ephemerides, and the missions to the small bodies.

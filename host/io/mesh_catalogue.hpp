@@ -13,7 +13,7 @@ namespace cowgpu {
 struct CatalogueEntry {
   std::string name;   ///< "cgal:bull", as MESH takes it
   std::string file;   ///< below one of mesh_folders(): "cgal/bull.off"
-  std::string sha256; ///< of the file
+  std::string sha256; ///< hash of the file
   std::size_t vertices = 0, triangles = 0;
   std::string what, source, licence, scale, axes; ///< for people
 };

@@ -27,7 +27,7 @@ namespace {
 constexpr std::uint64_t longest_text = 1 << 20;
 constexpr std::uint64_t most_items = 100000;       // dimensions, variables, attributes of one thing
 constexpr std::uint64_t best_compression = 1100;   // deflate cannot do better
-constexpr rlim_t base_seconds = 5;                 // of processor time for the reader, and for each
+constexpr rlim_t base_seconds = 5;                 // processor time for the reader, and for each
 constexpr std::size_t bytes_a_second = 10'000'000; // so many bytes one more
 constexpr std::uint64_t base_memory = std::uint64_t(1) << 30;
 
@@ -121,7 +121,7 @@ void send_variable(Sender& out, int file, int variable, std::size_t file_size) {
   out.number(std::uint64_t(attributes));
   for (int i = 0; i < attributes; ++i) send_attribute(out, file, variable, i);
   const bool numbers = type != NC_CHAR && type > NC_NAT && type < NC_STRING;
-  int longer = 0, first_long = -1; // of its dimensions
+  int longer = 0, first_long = -1; // number of dimensions longer than 1, and the first of them
   for (int d = 0; d < rank; ++d) {
     if (lengths[std::size_t(d)] <= 1) continue;
     if (first_long < 0) first_long = d;

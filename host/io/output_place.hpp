@@ -29,7 +29,7 @@ struct OutputPlace {
   Descriptor folder;     ///< O_PATH: for the *at() calls only
   std::string name;      ///< in it; no symbolic link
   bool exists = false;   ///< `name` is there
-  struct stat status {}; ///< of it, if it exists
+  struct stat status {}; ///< state of the file, if it exists
   int descriptor = -1; ///< the open descriptor of this process that the path stands for (/dev/stdout, /dev/fd/3), or -1
   bool magic = false;  ///< a link of /proc to something open elsewhere, which only the system can follow
 };

@@ -14,7 +14,7 @@ namespace cowgpu {
 namespace {
 
 constexpr std::uint64_t most_instances = 0xffffffff;
-constexpr std::size_t most_header_bytes = std::size_t{1} << 20, most_names = 1000; // of elements, or properties of one
+constexpr std::size_t most_header_bytes = std::size_t{1} << 20, most_names = 1000; // elements, or properties of one
 
 std::optional<PlyType> type_named(std::string_view name) {
   struct Type {

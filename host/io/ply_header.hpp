@@ -22,8 +22,8 @@ struct PlyProperty {
   std::string_view name;
   PlyType type = PlyType::int8;
   bool is_list = false;
-  PlyType count_type = PlyType::int8; ///< of a list; never a real number
-  std::size_t line = 0;               ///< of the header, from 1
+  PlyType count_type = PlyType::int8; ///< type of a list's length; never a real number
+  std::size_t line = 0;               ///< line of the header, from 1
   bool again = false;                 ///< an earlier property of the element has this name; find() returns that one
 };
 

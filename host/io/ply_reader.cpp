@@ -205,7 +205,7 @@ private:
 
   void vertices(const PlyElement& element) {
     std::string others;
-    std::vector<int> coordinate; // of each property; -1: skipped
+    std::vector<int> coordinate; // coordinate that each property gives; -1: skipped
     for (const PlyProperty& p : element.properties) {
       const std::size_t c = p.name.size() == 1 ? std::string_view("xyz").find(p.name) : std::string_view::npos;
       coordinate.push_back(c == std::string_view::npos || p.is_list || p.again ? -1 : static_cast<int>(c));

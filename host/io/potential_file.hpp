@@ -30,7 +30,7 @@ struct PotentialTable {
   bool charge = false;                 ///< ex ... instead of ax ...
   std::string length_unit, potential_unit, force_unit, tensor_unit;
   std::optional<SphereGrid> grid; ///< where the points are one, ring by ring
-  double radius = 0;              ///< of that
+  double radius = 0;              ///< radius of that sphere
 };
 
 /// Writes either format; commit() is left to the caller. Throws Error(cannot_write, too_large, interrupted).

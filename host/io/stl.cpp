@@ -94,7 +94,7 @@ private:
     if (count > most_facets)
       throw Error(Fault::too_large, fmt::format("{}: {} facets; up to {} are read.", mesh_.name, count, most_facets));
     mesh_.faces.reserve(count);
-    mesh_.vertices.reserve(count / 2 + 2); // of a closed surface of one shell
+    mesh_.vertices.reserve(count / 2 + 2); // as many vertices as a closed surface of one shell has
     std::uint64_t attributes = 0;
     for (std::uint64_t f = 0; f < count; ++f) {
       const char* at = bytes_.data() + header_bytes + f * facet_bytes;

@@ -16,7 +16,7 @@ struct SurfaceFile {
   std::string recipe;          ///< "default" or "paper"
   std::string map_method;      ///< "stretch", "file" ...
   std::string mesh, mesh_hash; ///< name and SHA-256 of the mesh that was expanded
-  Placement placement;         ///< of that mesh
+  Placement placement;         ///< placement of that mesh
 };
 
 /// Whether a name is that of a result file rather than of a mesh: it ends in .json.
