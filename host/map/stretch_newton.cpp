@@ -180,7 +180,7 @@ private:
   // False if the energy does not fall.
   bool step(bool& converged) {
     const Eigen::VectorXd move = -solver_.solve(gradient_);
-    const double slope = gradient_.dot(move) / sphere_area; // of the energy, negative
+    const double slope = gradient_.dot(move) / sphere_area; // slope of the energy, negative
     converged = -slope < 1e-13 * energy_;
     near_ = near_ || -slope < 1e-6 * energy_;
     double longest = 0; // in any frames

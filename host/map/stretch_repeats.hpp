@@ -10,7 +10,7 @@ namespace cowgpu {
 
 /// The map of one copy of the body.
 struct StretchRepeat {
-  std::uint32_t seed = 0; ///< of the numbering and the rotation
+  std::uint32_t seed = 0; ///< seed of the numbering and the rotation
   double energy = 0;      ///< as in StretchMeasure
   double largest = 0;     ///< distance of a vertex, turned back, from where the map has it
   double rms = 0;         ///< the same, root mean square by the surface's area
