@@ -37,8 +37,8 @@ struct Audit {
   std::size_t not_finite_vertices = 0;
   std::size_t degenerate_faces = 0;  ///< repeating faces, and those of no area within the rounding of their coordinates
   std::size_t coincident_groups = 0; ///< places where several vertices lie
-  Box box;                           ///< of the used vertices
-  double area = 0;                   ///< of all faces
+  Box box;                           ///< bounding box of the used vertices
+  double area = 0;                   ///< sum over all faces
   double shortest_edge = 0, longest_edge = 0; ///< between different vertices; 0 without edges
 
   // Volumes: only of finite, closed, consistently oriented surfaces.

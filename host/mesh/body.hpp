@@ -30,11 +30,11 @@ struct Body {
 
   ClosedSurface surface;
   double density = 1;
-  double volume = 0;                  ///< of `surface`
-  double area = 0;                    ///< of `surface`
-  Vec3 centre_of_mass = Vec3::Zero(); ///< of body and parts; NaN where their masses cancel
-  Box box;                            ///< of all of them
-  Vec3 origin = Vec3::Zero();         ///< of every moment and tensor, in mesh coordinates
+  double volume = 0;                  ///< volume that `surface` bounds
+  double area = 0;                    ///< area of `surface`
+  Vec3 centre_of_mass = Vec3::Zero(); ///< centre of mass of body and parts; NaN where their masses cancel
+  Box box;                            ///< bounding box of body and parts
+  Vec3 origin = Vec3::Zero();         ///< the point that moments and tensors are about, in mesh coordinates
   std::string origin_kind;            ///< "centre of mass", "mesh" or "given"
   double brillouin_radius = 0;        ///< largest distance of a vertex, of parts too, from `origin`
   std::vector<Part> parts;

@@ -9,9 +9,9 @@ namespace cowgpu {
 struct CowLengths {
   double body_length = 0.66;    ///< rump to brisket
   double body_height = 0.37;    ///< topline to the deepest point of the belly
-  double body_width = 0.35;     ///< of the barrel, where it is widest
+  double body_width = 0.35;     ///< width of the barrel, where it is widest
   double leg_length = 0.225;    ///< ground to the deepest point of the belly
-  double leg_thickness = 0.058; ///< of the cannon bone
+  double leg_thickness = 0.058; ///< thickness of the cannon bone
   double neck_length = 0.16;    ///< withers to poll
   double head_length = 0.29;    ///< poll to nose
   double head_height = 0.185;   ///< forehead to jaw

@@ -48,7 +48,7 @@ std::string shown(const RawMesh& mesh, const EdgeUse& use) {
 
 void require_some(const RawMesh& mesh) {
   if (!mesh.vertices.empty() && !mesh.faces.empty()) return;
-  std::string notes; // of the reader: perhaps all faces were left out
+  std::string notes; // notes of the reader: perhaps all faces were left out
   for (const std::string& note : mesh.notes) notes += fmt::format(" ({})", note);
   fail(Fault::mesh_empty, mesh,
        fmt::format(

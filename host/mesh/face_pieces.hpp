@@ -18,7 +18,7 @@ using Segment2 = std::pair<Vec2, Vec2>;
 
 struct FacePiece {
   Vec2 middle;                 ///< a point inside
-  double fraction;             ///< of the triangle's area
+  double fraction;             ///< part of the triangle's area
   std::array<Vec2, 4> corners; ///< counter-clockwise; two of a triangle's are the same
 };
 

@@ -13,7 +13,7 @@ constexpr double tolerance = 1e-3;
 
 struct Cell {
   Vec3 middle, half; ///< a box
-  double bound;      ///< of the radii of balls centred in it
+  double bound;      ///< upper bound of the radii of balls centred in it
   std::uint32_t number;
 
   bool operator<(const Cell& other) const {

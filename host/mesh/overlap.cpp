@@ -143,7 +143,7 @@ private:
   std::span<const Face> faces_;
   const plan::Bvh& tree_;
   double size_ = 0;
-  std::vector<std::size_t> start_;     // of the pairs of each face
+  std::vector<std::size_t> start_;     // where the pairs of each face begin
   std::vector<const FacePair*> pairs_; // that cut it
 };
 

@@ -11,11 +11,11 @@
 namespace cowgpu {
 namespace {
 
-constexpr double thin = 1e-6;           // of a triangle's longest edge, and of the mean area
-constexpr double flat = 1e-6;           // of the polygon's extent
-constexpr double float_rounding = 1e-7; // of the largest coordinate
-constexpr double no_area = 1e-14;       // of the square of the extent, and of extent times largest coordinate
-constexpr double much_bent = 0.01;      // of the extent
+constexpr double thin = 1e-6;           // part of a triangle's longest edge, and of the mean area
+constexpr double flat = 1e-6;           // part of the polygon's extent
+constexpr double float_rounding = 1e-7; // part of the largest coordinate
+constexpr double no_area = 1e-14;       // part of the square of the extent, and of extent times largest coordinate
+constexpr double much_bent = 0.01;      // part of the extent
 
 /// The corners about the first one, so that the extent is 1: areas neither overflow nor vanish.
 struct Shape {

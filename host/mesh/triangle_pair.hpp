@@ -24,7 +24,7 @@ struct TrianglePair {
   Meeting meeting = Meeting::none;
   /// Triangles of different planes have a segment in common: from - to, rounded; else from = to.
   bool segment = false;
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero(); ///< of an overlap a point near it
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero(); ///< the ends of the cut; for an overlap a point near it
 };
 
 /// How faces f and g meet. Both must have area and finite corners, whose differences do not overflow; rounding decides
