@@ -14,18 +14,18 @@ namespace cowgpu::physics {
 struct DropProblem {
   MassiveBody body;
   PointMass planet = earth;
-  double height = 0;                        ///< of the centre of mass above the ground, m
+  double height = 0;                        ///< height of the centre of mass above the ground, m
   LongMat3 attitude = LongMat3::Identity(); ///< from the body's axes to the inertial ones
   Vec3 spin = Vec3::Zero();                 ///< angular velocity in the body's axes, rad/s
-  std::span<const Vec3> vertices; ///< of the surface that touches, from the centre of mass, in the body's axes, m
+  std::span<const Vec3> vertices;           ///< surface that touches, from the centre of mass, in the body's axes, m
 };
 
 struct DropResult {
-  double depth = 0;     ///< of the lowest point under the centre of mass at the start, as height above the ground goes
-  long double time = 0; ///< s, until the lowest point is on the ground
-  long double fallen = 0;                   ///< way of the centre of mass towards the planet's, m
-  long double kepler_time = 0;              ///< that a point takes to fall as far: closed form
-  double speed = 0;                         ///< of the centre of mass at the end, m/s
+  double depth = 0;            ///< lowest point under the centre of mass at the start, as height above the ground goes
+  long double time = 0;        ///< s, until the lowest point is on the ground
+  long double fallen = 0;      ///< way of the centre of mass towards the planet's, m
+  long double kepler_time = 0; ///< that a point takes to fall as far: closed form
+  double speed = 0;            ///< speed of the centre of mass at the end, m/s
   LongMat3 attitude = LongMat3::Identity(); ///< at the end
   LongVec3 turn =
       LongVec3::Zero(); ///< from the attitude that the spin alone would have led to, as a rotation vector in the
@@ -36,9 +36,9 @@ struct DropResult {
   LongVec3 torque = LongVec3::Zero(); ///< at the start, in the body's axes, N m
   std::size_t touching = 0;           ///< the vertex that touches
   std::size_t as_low = 0;             ///< how many are as low, to 1e-9 of the largest distance of a vertex
-  long double energy_drift = 0;       ///< of the energy, over the kinetic at the end with that of the spin at the start
+  long double energy_drift = 0; ///< change of energy over the kinetic at the end with that of the spin at the start
   long double momentum_drift =
-      0; ///< of the angular momentum about the planet's centre that gravity has brought, over the
+      0; ///< change of the angular momentum about the planet's centre that gravity has brought, over the
          ///< largest of its parts, but at least over what it brings a rod of this body's size
 };
 

@@ -61,7 +61,7 @@ double norm_of_y22() {
       const double twice_re = real_part(n).value * 5 / (4 * pi);
       sum += twice_re * twice_re * grid.weights[std::size_t(i)] * 2 * pi / grid.ring_length;
     }
-  return sum / 2; // of (Y + conj Y)^2
+  return sum / 2; // half the integral of (Y + conj Y)^2
 }
 
 // The lowest corner on the right, about which the cow is tipped.

@@ -26,7 +26,7 @@ struct ErratumNumber {
   int erratum = 0;
   std::string quantity;
   double right = 0, printed = 0;
-  double uncertainty = 0; ///< of `right`, where it is more than rounding
+  double uncertainty = 0; ///< uncertainty of `right`, where it is more than rounding
 };
 
 /// Those that follow from the paper's own numbers and formulas.

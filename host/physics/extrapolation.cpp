@@ -48,7 +48,7 @@ struct Trial {
 std::optional<Trial> try_step(const Slope& slope, const State& y, long double t, long double step,
                               const std::vector<Block>& blocks, long double tolerance) {
   const State first = slope(t, y);
-  std::vector<State> row; // of the extrapolation table, by Aitken and Neville
+  std::vector<State> row; // row of the extrapolation table, by Aitken and Neville
   for (std::size_t k = 0; k < columns; ++k) {
     const int parts = 2 * int(k + 1);
     State value = midpoint(slope, y, first, t, step, parts);

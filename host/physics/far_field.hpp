@@ -37,7 +37,7 @@ private:
   Vec3 centre_ = Vec3::Zero();
   double radius_ = 0;
   long double bound_ = 0;     // B
-  std::vector<double> sizes_; // of degrees, at the radius
+  std::vector<double> sizes_; // sizes of the degrees, at the radius
   std::optional<reference::ExteriorPotential<long double>> series_;
 };
 

@@ -25,7 +25,7 @@ using LongMat3 = Eigen::Matrix<long double, 3, 3>;
 struct PointMass {
   std::string name;       ///< "earth", or empty
   double gm = 0;          ///< m^3/s^2
-  double radius = 0;      ///< of the ground in m; 0: a point
+  double radius = 0;      ///< radius of the ground in m; 0: a point
   double hill_radius = 0; ///< in m; farther out what it orbits itself pulls things off; 0: it is alone
   double mass() const { return gm / gravitational_constant_si; } ///< kg
 };
@@ -41,10 +41,10 @@ struct MassiveBody {
   double mass = 0;
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d quadrupole = Eigen::Matrix3d::Zero();
-  double radius = 0;        ///< of the Brillouin sphere, which the point mass must be outside of; as in MassTensors
-  bool radius_known = true; ///< the same
-  int order = 2;            ///< the last degree that counts
-  std::shared_ptr<const reference::ExteriorPotential<long double>> higher; ///< of degrees 3 to `order`; null where 2
+  double radius = 0; ///< radius of the Brillouin sphere, which the point mass must be outside of; as in MassTensors
+  bool radius_known = true;                                                ///< the same
+  int order = 2;                                                           ///< the last degree that counts
+  std::shared_ptr<const reference::ExteriorPotential<long double>> higher; ///< degrees 3 to `order`; null where 2
 };
 
 /// Degrees 3 and more of `moments`, in kg m^l, and what else is in `tensors`, about the centre of mass in SI. Throws

@@ -20,7 +20,7 @@ namespace {
 using Real = long double;
 
 constexpr Real four_pi = 4 * std::numbers::pi_v<Real>;
-constexpr Real touching = 4 * std::numeric_limits<double>::epsilon(); // of the largest coordinate
+constexpr Real touching = 4 * std::numeric_limits<double>::epsilon(); // part of the largest coordinate
 constexpr std::size_t points_per_task = 4;
 
 // a + b - e of a triangle with the side e, whose third corner lies `height` away from that side's line and whose foot is

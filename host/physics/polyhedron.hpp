@@ -24,7 +24,7 @@ struct PolyhedronAt {
   long double value = 0;
   LongVec3 gradient = LongVec3::Zero();
   LongMatrix3 hessian = LongMatrix3::Zero(); ///< on a face the mean of both sides'; infinite on edges
-  long double winding = 0; ///< of the surface about the point, -(trace of the hessian)/4 pi; on a face the mean
+  long double winding = 0; ///< winding number about the point, -(trace of the hessian)/4 pi; on a face the mean
   bool on_edge = false;    ///< or on a vertex, where faces that meet there are not coplanar: the hessian leaves it out
 };
 
@@ -68,7 +68,7 @@ private:
     LongVec3 direction;
     LongMatrix3 dyad;
     bool flat;            // its dyad is zero but for rounding
-    long double rounding; // of the dyad, in units of the last place
+    long double rounding; // rounding of the dyad, in units of the last place
   };
   struct Side {
     std::array<std::uint32_t, 3> corners;

@@ -72,7 +72,7 @@ struct SeriesErrors {
   std::vector<GoodFrom> good_from;
   std::vector<double> ladder;             ///< distances that good_from was measured at
   std::vector<std::vector<double>> worst; ///< [order][of the ladder]: the larger of both largest errors
-  std::size_t directions = 0;             ///< of the grid for root mean squares
+  std::size_t directions = 0;             ///< directions of the grid for root mean squares
   int truth_degree = 0;                   ///< from `truth_from` radii on the truth is the series to this degree,
   double truth_from = 0;
   double truth_error = 0; ///< which there differs so much from the polyhedron

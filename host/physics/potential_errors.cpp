@@ -19,16 +19,16 @@
 namespace cowgpu::physics {
 namespace {
 
-constexpr int mean_degree = 12; // of the grid for root mean squares
+constexpr int mean_degree = 12; // degree of the grid for root mean squares
 constexpr int steps_per_decade = 16;
 constexpr int usual_truth_degree = 256;
 constexpr int largest_scan_degree = 256;
 constexpr int scanned_degrees = 96; // at most, beyond the order
-constexpr int points_per_wave = 6;  // of the highest degree, along the rings of a scan
+constexpr int points_per_wave = 6;  // points per wave of the highest degree, along the rings of a scan
 constexpr std::size_t axis_ends = 6;
 constexpr std::size_t outermost = 64;  // vertices whose directions are tried
 constexpr double vertices_matter = 2;  // radii: farther out peaks over vertices are as wide as the scan sees
-constexpr double worth_climbing = 0.7; // of the highest point of a scan
+constexpr double worth_climbing = 0.7; // part of the highest point of a scan
 
 double truth_begins() {
   return std::pow(10.0, 1.0 / steps_per_decade); // 1.15^-257 is 1e-16

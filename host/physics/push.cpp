@@ -334,7 +334,7 @@ PushResult push(const Rocker& rocker, const Profile& profile, const Monitor& mon
   if (!up) return result;
   // Free: energy decides, the integration only says when.
   const double alpha = rocker.balance, weight = rocker.mass * rocker.gravity * rocker.radius;
-  const double left = lifted(alpha, alpha) - lifted(alpha, body.y[0]); // of the lift, over m g r
+  const double left = lifted(alpha, alpha) - lifted(alpha, body.y[0]); // what is left of the lift, over m g r
   const double kinetic = rocker.inertia * body.y[1] * body.y[1] / (2 * weight);
   const bool tips = body.y[1] > 0 && kinetic > left;
   if (tips) result.outcome = Outcome::tipped;

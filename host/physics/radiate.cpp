@@ -65,7 +65,7 @@ Third turned(const Third& t, const Mat& w) {
 // "1.25e-03" as "0.00125".
 std::string without_exponent(const std::string& text) {
   const std::size_t e = text.find('e');
-  const int exponent = read_whole(text.substr(e + 1), -5000, 5000).value(); // of a long double
+  const int exponent = read_whole(text.substr(e + 1), -5000, 5000).value(); // decimal exponent of a long double
   std::string digits = text.substr(0, e);
   digits.erase(std::remove(digits.begin(), digits.end(), '.'), digits.end());
   digits.erase(digits.find_last_not_of('0') + 1);

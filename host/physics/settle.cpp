@@ -77,7 +77,7 @@ Place place_of_origin(const std::vector<Vec2>& corners, double noise) {
     nearest = foot.norm();
     place.nearest = along == 0 ? std::vector{i} : along == 1 ? std::vector{j} : std::vector{i, j};
     place.outward = foot.norm() > noise && place.nearest.size() == 1 ? Vec2(-foot.normalized()) : normal;
-    if (place.nearest.size() == 2 && normal.dot(foot) > 0) place.outward = -normal; // of a segment: the other side
+    if (place.nearest.size() == 2 && normal.dot(foot) > 0) place.outward = -normal; // the segment's other side
   }
   place.margin = inside ? nearest : -nearest;
   return place;
@@ -120,7 +120,7 @@ struct Rolling {
   std::vector<Vec3> r;
   double size = 0;
   Vec3 down = -Vec3::UnitY();
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity(); // of all rolls so far: brings `down` to -y
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity(); // product of all rolls so far: brings `down` to -y
 
   // Rolls on to another direction: about the axis at right angles to both, which is level.
   void turn_to(const Vec3& direction) {

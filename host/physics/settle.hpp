@@ -33,9 +33,9 @@ struct Roll {
 /// How the body as modelled is turned to rest.
 struct Attitude {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity(); ///< all rolls, one after the other
-  double angle = 0;                                       ///< of that rotation, radians
-  double least_angle = 0;                                 ///< of the least rotation that brings the same side down
-  double heading = 0;                                     ///< what turns that into `rotation`: radians about +y
+  double angle = 0;                                       ///< angle of that rotation, radians
+  double least_angle = 0; ///< angle of the least rotation that brings the same side down
+  double heading = 0;     ///< what turns that into `rotation`: radians about +y
   std::vector<Roll> rolls;
   bool balanced = false; ///< stood on a corner or an edge, b right above: it was let fall to the right, or off the edge
 };

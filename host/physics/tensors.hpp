@@ -21,8 +21,8 @@ struct MassTensors {
   std::optional<double> trace;                          ///< integral of density r^2; coefficients may lack it
   std::optional<Vec3> origin;                           ///< in mesh coordinates
   std::string origin_kind;                              ///< "centre of mass", "mesh", "given", or empty
-  double radius = 0;        ///< of a sphere about the origin that holds the body; where not known the reference radius,
-  bool radius_known = true; ///< which says how large the body may be, and no more
+  double radius = 0; ///< radius of a sphere about the origin that holds the body; where not known the reference radius,
+  bool radius_known = true;                                ///< which says how large the body may be, and no more
   std::string length_unit = std::string(mesh_length_unit); ///< "m" where metric
   std::string mass_unit = std::string(mesh_mass_unit);     ///< "kg" where metric
 
@@ -62,7 +62,7 @@ MassTensors in_si(const MassTensors& tensors, double metres, double kilograms);
 struct PrincipalAxes {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   Vec3 quadrupole = Vec3::Zero(); ///< along them, falling
-  std::optional<Vec3> moments;    ///< of inertia, rising; with the trace only
+  std::optional<Vec3> moments;    ///< moments of inertia, rising; with the trace only
   bool first_two_alike = false;   ///< to 1e-9 of the largest quadrupole: any two axes in their plane would do
   bool last_two_alike = false;
 };

@@ -16,7 +16,7 @@
 namespace cowgpu::physics {
 
 struct Orbit {
-  double gm = 0;       ///< of the point mass, m^3/s^2
+  double gm = 0;       ///< G M of the point mass, m^3/s^2
   double radius = 0;   ///< between the centres, m
   double rate = 0;     ///< n in rad/s: n^2 = (gm + G m)/r^3
   double gradient = 0; ///< gm/r^3; n^2 of a body without mass

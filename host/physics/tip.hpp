@@ -34,7 +34,7 @@ struct TipBody {
   double mass = 0;
   Vec3 barycentre = Vec3::Zero();
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero(); ///< about the barycentre
-  std::vector<Vec3> vertices;                        ///< of what is solid
+  std::vector<Vec3> vertices;                        ///< vertices of what is solid
   std::vector<Face> faces;
   bool smooth = false; ///< the triangles stand for a smooth surface: one that touches at a single point rolls there
 };
@@ -58,7 +58,7 @@ struct Stance {
   TipBody body;
   Attitude attitude;
   Contact contact;
-  std::vector<Foot> feet; ///< of a smooth body
+  std::vector<Foot> feet; ///< feet of a smooth body
   bool held = false; ///< the barycentre is over the patch sideways but not fore and aft: something else must hold it
 };
 
@@ -76,7 +76,7 @@ struct Tipping {
   Vec3 support = Vec3::Zero();   ///< the support point that the pivot is the projection of
   Vec3 pivot = Vec3::Zero();     ///< p
   Vec3 point = Vec3::Zero();     ///< p_T
-  Vec3 direction = Vec3::Zero(); ///< of the push
+  Vec3 direction = Vec3::Zero(); ///< direction of the push
   double offset = 0;             ///< d
   double height = 0;             ///< h
   double radius = 0;             ///< r
