@@ -47,7 +47,7 @@ public:
 
   struct alignas(64) Node {
     Vec3 low, high;
-    std::uint32_t first = 0; ///< of a leaf: its first triangle; else its second child. The first child is the next node
+    std::uint32_t first = 0; ///< a leaf's first triangle; another node's second child. The first child is the next node
     std::uint32_t count = 0; ///< triangles, at most leaf_faces; 0: no leaf
   };
   static constexpr std::uint32_t leaf_faces = 4;

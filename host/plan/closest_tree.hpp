@@ -42,10 +42,10 @@ template <class T>
 struct TriangleFrame {
   T a[3];
   T u[3], v[3], n[3];
-  T length;             ///< of ab
+  T length;             ///< length of ab
   T cx, cy, c_inverse;  ///< c - a in the frame, over its squared length; 0 if that is 0
   T ex, ey, e_inverse;  ///< c - b, the same
-  std::uint32_t corner; ///< of the face that is a; b and c follow
+  std::uint32_t corner; ///< the face's corner that is a; b and c follow
 };
 inline constexpr std::size_t frame_numbers = 19;
 
@@ -78,8 +78,8 @@ struct ClosestTree {
 
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
-  Vec3 low, high;      ///< of the vertices in use
-  Vec3 centre;         ///< of that box
+  Vec3 low, high;      ///< corners of the box of the vertices in use
+  Vec3 centre;         ///< centre of that box
   double size = 0;     ///< largest |coordinate| in use
   double scale = 1;    ///< 1 / half its longest side
   bool closed = false; ///< every edge is run as often one way as the other

@@ -12,7 +12,7 @@ namespace {
 void set_rings(Legendre& plan, const SphereGrid& grid) {
   // Rings without a mirror image: the equator, and the pole of grids that have one only.
   const bool pole_alone = grid.kind == GridKind::driscoll_healy || grid.kind == GridKind::driscoll_healy_square;
-  const int mirror_sum = pole_alone ? grid.rings : grid.rings - 1; // of the indices of a pair
+  const int mirror_sum = pole_alone ? grid.rings : grid.rings - 1; // sum of the indices of a pair
   plan.pairs = mirror_sum / 2 + 1;
   plan.blocks = (plan.pairs + block_pairs - 1) / block_pairs;
   const auto padded = std::size_t(plan.blocks) * block_pairs;

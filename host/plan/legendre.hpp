@@ -41,8 +41,8 @@ inline constexpr double significant = 1e-30;
 /// Recurrence coefficients and rings of a transform. Pairs of rings are sorted from the poles to the equator.
 struct Legendre {
   int lmax = 0;
-  int pairs = 0;        ///< of rings
-  int blocks = 0;       ///< of block_pairs pairs; arrays over pairs have blocks * block_pairs entries
+  int pairs = 0;        ///< number of pairs of rings
+  int blocks = 0;       ///< number of blocks of block_pairs pairs; arrays over pairs have blocks * block_pairs entries
   int polar_blocks = 0; ///< the first blocks, which take -sin^2 theta
 
   std::vector<int> north;     ///< ring north of the equator, or on it; -1 in the padding
@@ -52,9 +52,9 @@ struct Legendre {
   std::vector<double> weight; ///< quadrature weight times 2 pi / ring_length, of both rings; 0 in the padding
   std::vector<long double> sine;
 
-  std::vector<std::size_t> offset; ///< of each order's steps in a, b, b_polar, alpha; lmax + 2 entries
+  std::vector<std::size_t> offset; ///< where each order's steps begin in a, b, b_polar, alpha; lmax + 2 entries
   std::vector<double> a, b, b_polar, alpha;
-  std::vector<std::size_t> e_offset; ///< of each order's e_l, l = m, m + 1, ..., to l = m + 2 padded_steps(m) + 1
+  std::vector<std::size_t> e_offset; ///< begin of each order's e_l, l = m, m + 1, ..., to l = m + 2 padded_steps(m) + 1
   std::vector<double> e;
 
   /// Steps k with m + 2 k <= lmax.

@@ -54,7 +54,7 @@ struct Moments {
   int column_scale = 1;            ///< s above: 1 up to degree 1024, 2 beyond
   int start_exponent = 0;          ///< rows start at 2^start_exponent
   std::vector<TrianglePair> pairs; ///< by decreasing radius; padded with empty pairs to a multiple of lanes
-  std::vector<int> last_degree;    ///< of each group: its rows stop there; non-negative, <= lmax
+  std::vector<int> last_degree;    ///< degree at which the rows of each group stop; non-negative, <= lmax
   double sum_of_dets = 0;          ///< over all triangles, as sum_of_determinants() has it
   std::uint64_t pair_count = 0;    ///< without the padding
   double elements = 0;             ///< sum over pairs of (L+1)(L+2)/2, L the group's last degree

@@ -50,7 +50,7 @@ struct PotentialPoints {
 
   std::vector<std::uint32_t> order;              ///< [i]: the problem's point that stands at i
   std::vector<double> x, y, z, z_rest, q, start; ///< x', y', z' in two parts, q, J_00; a multiple of `block`
-  std::vector<int> tops;                         ///< of each block: the degree up to which its points need the series
+  std::vector<int> tops;                         ///< for each block the degree up to which its points need the series
   std::size_t padded() const { return x.size(); }
   std::size_t blocks() const { return tops.size(); }
   /// Entries of the table that the points of block b look at.

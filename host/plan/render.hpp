@@ -63,8 +63,8 @@ private:
   std::vector<Vec3> vertices_;
   std::vector<Face> faces_;
   std::vector<Vec3> normals_, flat_;
-  std::vector<std::uint32_t> first_face_;   ///< of each surface
-  std::vector<std::uint32_t> first_vertex_; ///< of each surface
+  std::vector<std::uint32_t> first_face_;   ///< number of each surface's first face
+  std::vector<std::uint32_t> first_vertex_; ///< number of each surface's first vertex
   double front_ = 0, reach_ = 1;
   Bvh tree_;
   std::vector<Vec3> directions_;
@@ -90,7 +90,7 @@ private:
   struct EdgeSample {
     int x, y; ///< pixel
     RenderSample sample;
-    int rays; ///< of light; 0: known
+    int rays; ///< rays of ambient light; 0: known
   };
 
   void take_middles(std::span<const RayHit> hits);
@@ -108,7 +108,7 @@ private:
   Step step_ = Step::middles;
   std::vector<Ray> rays_;
   std::vector<RenderSample> cells_; ///< the pixels' middles, rim included
-  std::vector<int> light_rays_;     ///< of each of them
+  std::vector<int> light_rays_;     ///< rays of ambient light at each of the pixels' middles
   std::vector<EdgeSample> edges_;   ///< in the order of pixels
   std::vector<std::uint32_t> edge_pixels_;
   std::vector<Radiance> radiance_;

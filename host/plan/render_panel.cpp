@@ -10,7 +10,7 @@
 namespace cowgpu::plan {
 namespace {
 
-constexpr int patterns = 16, rays_each = 16; // of ambient light: in a block of 4 x 4 pixels; at each
+constexpr int patterns = 16, rays_each = 16; // ambient light: patterns in a block of 4 x 4 pixels; rays at each pixel
 constexpr double reach = 0.3;                // how far surroundings darken, of the panel's largest extent
 
 /// Around +z with density cos / pi.

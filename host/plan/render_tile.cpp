@@ -9,7 +9,7 @@ namespace cowgpu::plan {
 namespace {
 
 constexpr int apron = 2, side = RenderTile::size + 2 * apron; // pixels
-constexpr int samples = 16;                                   // of a pixel on an edge
+constexpr int samples = 16;                                   // samples of a pixel on an edge
 
 int pattern_of(int x, int y) {
   return (x & 3) + 4 * (y & 3);

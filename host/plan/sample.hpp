@@ -82,7 +82,7 @@ private:
   const Sample& sample_;
   std::array<Vec3, 3> normals_;
   std::array<double, 3> normal_rho_, normal_phi_; // distance from the axis, longitude
-  double theta_, phi_, sine_;                     // of the cap's centre
+  double theta_, phi_, sine_;                     // angles and sine of theta of the cap's centre
   double half_sine2_;                             // sin^2 of half its angle
 };
 
