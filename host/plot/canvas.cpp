@@ -30,7 +30,7 @@ cairo_status_t append(void* to, const unsigned char* bytes, unsigned length) noe
 
 struct PlacedRun {
   TextRun run;
-  double x, y, size; ///< of its first letter on the baseline, from the text's own
+  double x, y, size; ///< place of its first letter on the baseline, from the text's own; size of its letters
 };
 
 } // namespace

@@ -24,7 +24,7 @@ struct Point {
 };
 
 struct Box {
-  double x = 0, y = 0, width = 0, height = 0; ///< of the upper left corner; both sizes at least 0
+  double x = 0, y = 0, width = 0, height = 0; ///< upper left corner; both sizes at least 0
   double right() const { return x + width; }
   double bottom() const { return y + height; }
   Point middle() const { return {x + width / 2, y + height / 2}; }
