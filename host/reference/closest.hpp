@@ -37,8 +37,8 @@ Point<T> cross(const Point<T>& a, const Point<T>& b) {
 template <class T>
 struct Closest {
   T distance2 = T(-1);          ///< squared; -1: none so far
-  Point<T> offset{};            ///< of the point from the query
-  std::uint32_t face = no_face; ///< of several at the same distance the least
+  Point<T> offset{};            ///< vector from the query to the point
+  std::uint32_t face = no_face; ///< the nearest face; the least of several at the same distance
   SurfaceFeature feature;
 };
 
@@ -87,7 +87,7 @@ T winding_number(std::span<const Vec3> vertices, std::span<const Face> faces, co
   using std::atan2;
   using std::sqrt;
   const Point<T> p = point_of<T>(query);
-  T sum = 0; // of half the solid angles
+  T sum = 0; // sum of half the solid angles
   for (const Face& face : faces) {
     Point<T> r[3];
     T length[3];

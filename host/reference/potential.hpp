@@ -125,7 +125,7 @@ private:
 
   int lmax_;
   Real radius_, first_{};
-  std::vector<Real> root_;     // of 0, 1, 2 ...
+  std::vector<Real> root_;     // square roots of 0, 1, 2 ...
   std::vector<Complex> terms_; // 4 pi/(2l+1) conj(Q_lm) / R^l
 };
 

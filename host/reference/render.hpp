@@ -13,7 +13,7 @@ namespace cowgpu::reference {
 template <class T>
 struct RayHit {
   static constexpr std::uint32_t nothing = 0xffffffffU;
-  std::uint32_t face = nothing; ///< of several at the same t the least
+  std::uint32_t face = nothing; ///< the face hit; the least of several at the same t
   T t{}, u{}, v{};              ///< hit = origin + t direction = (1 - u - v) a + u b + v c
 };
 

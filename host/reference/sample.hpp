@@ -38,7 +38,7 @@ inline constexpr std::uint32_t no_face = 0xffffffff;
 /// What one direction meets.
 struct Sample {
   std::uint32_t face = no_face;    ///< least (flipped, face) of the triangles that hold the direction
-  bool flipped = false;            ///< of that face
+  bool flipped = false;            ///< whether that face is flipped
   bool edge = false;               ///< the direction lies on its edge or corner
   unsigned inside = 0;             ///< triangles that hold it inside
   std::array<double, 3> weights{}; ///< barycentric coordinates of the face's corners, rounded once
