@@ -26,15 +26,15 @@ struct FlowResult {
   double time = 0;                 ///< T, mesh length unit
   std::string time_choice;         ///< "auto" (the star-shape time), "given" or "paper"
   StarShapeTime star;              ///< about the expansion's origin
-  double star_seconds = 0;         ///< of the search, where it is no part of the expansion
-  FlowReport points;               ///< of the mesh's vertices, or of the finest refinement's
-  std::vector<SheetReport> sheets; ///< of each refinement, the mesh itself first
+  double star_seconds = 0;         ///< time of the search, where it is no part of the expansion
+  FlowReport points;               ///< flow of the mesh's vertices, or of the finest refinement's
+  std::vector<SheetReport> sheets; ///< sheets of each refinement, the mesh itself first
   std::optional<LevelSetReport> level_set;
-  std::optional<LevelSetSutures> sutures; ///< of the level set's map
+  std::optional<LevelSetSutures> sutures; ///< sutures of the level set's map
   /// [degree][field], the largest over m; empty where none is known (the paper's recipe).
   std::vector<std::array<double, 6>> uncertainty;
   std::string failure;                     ///< LevelSetExpansion::failure
-  std::optional<ConvergedTable> converged; ///< of the paper's recipe: signed sheets at the same time
+  std::optional<ConvergedTable> converged; ///< the paper's recipe, converged: signed sheets at the same time
 };
 
 /// Whether the body inflated for `time` is star-shaped, in a sentence.

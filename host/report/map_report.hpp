@@ -29,10 +29,10 @@ struct MapReport {
   const RawMesh* mesh = nullptr;
   const SphereMap* map = nullptr;
   MapQuality quality;
-  std::optional<StretchMeasure> stretch;                         ///< of the stretch map
-  std::vector<StretchRepeat> repeats;                            ///< of the stretch map, if they were asked for
-  std::optional<FlowMapReport> flow;                             ///< of the flow
-  std::string output;                                            ///< the file written, or empty
+  std::optional<StretchMeasure> stretch; ///< stretch of the stretch map
+  std::vector<StretchRepeat> repeats;    ///< repeats of the stretch map on relabelled copies, if they were asked for
+  std::optional<FlowMapReport> flow;     ///< report of the flow's map
+  std::string output;                    ///< the file written, or empty
   double map_seconds = 0, judge_seconds = 0, repeat_seconds = 0; ///< wall time
 };
 

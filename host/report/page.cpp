@@ -27,7 +27,7 @@ static_assert(std::endian::native == std::endian::little, "arrays are copied as 
 
 // What the page's template has where these go (host/report/page/index.html).
 constexpr std::string_view title_place = "<!--cowgpu:title-->", data_place = "{\"cowgpu\":\"data\"}";
-constexpr int largest_mass_degree = 128; // of the table; the spectrum has all
+constexpr int largest_mass_degree = 128; // last degree in the table; the spectrum has all
 
 std::string base64(const void* data, std::size_t bytes) {
   constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -39,8 +39,8 @@ struct PageDocument {
   const nlohmann::json* result = nullptr; ///< cowgpu.result.v1
   SphereGrid grid;                        ///< Clenshaw-Curtis: where the surfaces' vertices lie
   std::vector<PageSurface> surfaces;
-  std::string mesh_name;          ///< of the true body; empty where it is not known
-  std::span<const Vec3> vertices; ///< of it, where it is shown
+  std::string mesh_name;          ///< name of the true body's mesh; empty where it is not known
+  std::span<const Vec3> vertices; ///< vertices of the true body, where it is shown
   std::span<const Face> faces;
   std::vector<nlohmann::ordered_json> physics; ///< documents of `cowgpu tensors`, `radiate` ...
   std::vector<std::string> notes;

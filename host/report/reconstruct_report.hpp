@@ -30,8 +30,8 @@ struct ReconstructReport {
   std::string input;                ///< a mesh's name, or a result file
   bool from_file = false;
   DeviceFacts device;
-  std::string name, recipe, map_method; ///< of the expansion
-  std::string mesh, mesh_hash;          ///< of what was expanded
+  std::string name, recipe, map_method; ///< names of the expansion, its recipe and its map's method
+  std::string mesh, mesh_hash;          ///< name and SHA-256 of the mesh that was expanded
   const SurfaceExpansion* expansion = nullptr;
   SurfaceFields fields = SurfaceFields::xyz;
   std::optional<Body> body; ///< where the mesh is known

@@ -17,7 +17,7 @@ namespace cowgpu {
 
 struct SurfaceResult {
   std::string name;                 ///< key among the expansions: "harmonic", "stretch", "smooth" or "flow"
-  SphereMap map;                    ///< of the flow: where the mesh's vertices come to, seen from the origin
+  SphereMap map;                    ///< the map; of the flow: where the mesh's vertices come to, seen from the origin
   std::string map_file, map_sha256; ///< the file that the map was read from (method "file"), or empty
   std::string recipe;               ///< "default" or "paper"
   std::string origin_kind;          ///< as in Body
@@ -28,7 +28,7 @@ struct SurfaceResult {
   ExpandSurfaceReport report;
   MapQuality quality; ///< for the grid of the expansion
   double map_seconds = 0;
-  std::optional<FlowResult> flow; ///< of the flow
+  std::optional<FlowResult> flow; ///< what the flow adds to its expansion
 };
 
 /// How directions are looked up: "ray", "closest point", "level set" or "sheets".
