@@ -107,7 +107,7 @@ std::vector<Drawing> drawings(const std::string& mesh, const Words& recipe) {
 Plan plan(const std::string& mesh, bool papers_mesh, const std::string& device, bool page) {
   const Words on = {"--device", device};
   const Words recipe = papers_mesh ? Words{"--recipe", "paper"} : Words{};
-  const Words body = {"--recipe", "paper", "--json"}; // of another mesh its units alone
+  const Words body = {"--recipe", "paper", "--json"}; // for another mesh than the paper's, units alone
   Plan plan;
   plan.stages = {
       {"inspect", "what the mesh is", {"inspect", mesh, "--json"}, "data/inspect.json", {}, 0.2},

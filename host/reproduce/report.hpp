@@ -17,7 +17,7 @@ struct Ran {
   double seconds = 0;
   int exit_code = 0;
   bool again = false;  ///< false: left by an earlier run
-  std::string message; ///< of a stage that failed, its last words
+  std::string message; ///< last words of a stage that failed
 };
 
 struct Reproduction {
@@ -27,11 +27,11 @@ struct Reproduction {
   bool papers_mesh = true;
   bool asked_for = false;        ///< the user named this mesh; else it stands in for the paper's, which is missing
   nlohmann::ordered_json device; ///< as in the result of `expand`, or null
-  double seconds = 0;            ///< of all stages, whenever they ran
+  double seconds = 0;            ///< time of all stages, whenever they ran
   std::vector<Row> rows;
   std::vector<Ran> stages;
   std::vector<Figure> figures; ///< those that are there
-  nlohmann::json errata;       ///< of `cowgpu errata --json`, or null
+  nlohmann::json errata;       ///< output of `cowgpu errata --json`, or null
 };
 
 /// How many rows of each verdict.

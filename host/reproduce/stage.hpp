@@ -12,7 +12,7 @@ namespace cowgpu::reproduce {
 struct Stage {
   std::string name;                   ///< "harmonic"
   std::string what;                   ///< "the surface over the harmonic map, by the paper's recipe"
-  std::vector<std::string> arguments; ///< of the program
+  std::vector<std::string> arguments; ///< arguments of the program
   std::string output;                 ///< takes standard output: "data/tensors.json", or a text
   std::vector<std::string> files;     ///< that the command writes itself
   double seconds = 1;                 ///< what it took on two cores, for the estimate of the time left

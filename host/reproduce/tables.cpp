@@ -117,7 +117,7 @@ void add_beside(const Documents& documents, const std::string& table, const std:
                               entry.at("why").get<std::string>(), file));
     return;
   }
-  const bool written = documents.contains(file); // of another body, beside which it lays nothing
+  const bool written = documents.contains(file); // the file has this body's numbers alone
   for (const char* item : items) {
     Row row;
     row.table = table;
