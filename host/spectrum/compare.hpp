@@ -10,8 +10,8 @@ namespace cowgpu {
 
 /// One set of coefficients against another.
 struct DegreeErrors {
-  std::vector<double> difference; ///< of each degree: sqrt(sum_m |a - b|^2), negative orders included
-  std::vector<double> norm;       ///< of each degree of b
+  std::vector<double> difference; ///< norm of each degree of a - b: sqrt(sum_m |a - b|^2), all orders
+  std::vector<double> norm;       ///< norm of each degree of b
   double ratio = 0;               ///< the largest difference over its estimate; NaN if anything is not a number
   int degree = 0;                 ///< where that is
 

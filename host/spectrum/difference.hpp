@@ -10,8 +10,8 @@ namespace cowgpu {
 
 /// Of one field.
 struct FieldDifference {
-  std::string name;                 ///< of the first set's field, or of its number
-  std::vector<double> norm;         ///< of degree l of the first, sqrt(sum_m C_lm^2 + S_lm^2), all orders
+  std::string name;                 ///< name of the first set's field, or its number
+  std::vector<double> norm;         ///< norm of degree l of the first, sqrt(sum_m C_lm^2 + S_lm^2), all orders
   std::vector<double> difference;   ///< the same of the difference
   std::vector<int> worst_order;     ///< m where sqrt(dC^2 + dS^2) is largest
   double total_norm = 0, total = 0; ///< over all degrees
@@ -28,14 +28,14 @@ struct FieldDifference {
 };
 
 struct CoefficientDifference {
-  Convention convention; ///< of the norms
+  Convention convention; ///< convention of the norms
   CoefficientKind kind = CoefficientKind::field;
   int lmax = 0;                ///< the smaller of both
-  double reference_radius = 0; ///< of multipoles and potentials
+  double reference_radius = 0; ///< reference radius of multipoles and potentials
   std::vector<FieldDifference> fields;
   std::vector<std::string> unlike; ///< sentences: what else differs between the sets
 
-  double worst() const; ///< of all fields
+  double worst() const; ///< largest difference of all fields
 };
 
 /// Both as real coefficients in `convention`, the second one's kind and reference radius changed to the first one's. Degrees

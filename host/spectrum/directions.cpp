@@ -97,7 +97,7 @@ HWY_EXPORT(add_steps);
 
 namespace {
 
-constexpr std::size_t lanes = 32, few_lanes = 8; // of a block, if there are many directions and if not
+constexpr std::size_t lanes = 32, few_lanes = 8; // lanes of a block, if there are many directions and if there are few
 constexpr int panel_steps = 64, segment = 8;     // steps k between sums, between looks at the range
 constexpr int phase_table = 32;                  // exp(i m phi) = coarse[m / 32] fine[m % 32]
 constexpr double unit = 0x1p768, one_unit_less = 0x1p-768, rescale_above = 0x1p600, too_small = 0x1p-900;
@@ -147,8 +147,8 @@ struct DirectionSynthesis::Block {
   struct alignas(64) Sums {
     std::array<Lanes, 4> value; // E and O, real and imaginary
   };
-  std::vector<Sums> sums;     // of each field
-  std::vector<Lanes> results; // of each field, then d_phi
+  std::vector<Sums> sums;     // sums of each field
+  std::vector<Lanes> results; // results of each field, then d_phi
 
   // P_mm as a mantissa above too_small and a scale.
   void start() {

@@ -15,7 +15,7 @@ namespace cowgpu {
 
 /// A place on the sphere.
 struct Direction {
-  long double cosine = 1, sine = 0;  ///< of theta, to the last bits: sin^m theta amplifies rounding
+  long double cosine = 1, sine = 0;  ///< cosine and sine of theta, to the last bits: sin^m theta amplifies rounding
   double phi = 0, phi_remainder = 0; ///< longitude as the sum of both, radians: m phi amplifies rounding too
 };
 

@@ -9,7 +9,7 @@ namespace cowgpu {
 namespace {
 
 constexpr double unit_roundoff = 0x1p-53;
-constexpr double well_known = 1e-6; ///< of the norm
+constexpr double well_known = 1e-6; ///< part of the norm
 constexpr double known = 0.5;
 
 std::string degree_word(std::span<const int> degrees) {

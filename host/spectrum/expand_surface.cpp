@@ -46,7 +46,7 @@ std::vector<std::array<double, 6>> truncation_of(const SphereCoefficients& a,
   std::vector<std::array<double, 6>> rows(std::size_t(a.lmax) + 1);
   for (int f = 0; f < fields; ++f) {
     const std::vector<double> s = power(a, f);
-    double above = squares[std::size_t(f)]; // of lmax: the smallest degrees hold most, so that they go first
+    double above = squares[std::size_t(f)]; // power above lmax; the smallest degrees go first
     for (const double part : s) above -= part;
     above = std::max(0.0, above);
     for (int l = a.lmax; l >= 0; --l) {

@@ -15,12 +15,12 @@ inline constexpr std::array surface_field_names = {"f_r", "f_dtheta", "f_dphi", 
 
 struct ExpandSurfaceOptions {
   int lmax = 0;               ///< 0 to largest_surface_degree
-  Vec3 origin = Vec3::Zero(); ///< of f_r, f_dtheta and f_dphi, in mesh coordinates
+  Vec3 origin = Vec3::Zero(); ///< origin of f_r, f_dtheta and f_dphi, in mesh coordinates
   /// Look a direction up at the closest point of the chord triangles (closest_point.hpp), not along the ray
   /// (Backend::sample).
   bool closest_point = false;
   bool signed_dphi = true; ///< false: expand |f_dphi|, as the paper's table does
-  int grid_degree = 0;     ///< of the grid sampled on, at least 2 lmax; 0: surface_grid_degree(lmax)
+  int grid_degree = 0;     ///< degree of the grid sampled on, at least 2 lmax; 0: surface_grid_degree(lmax)
   /// Expand once more on the grid of half the degree, with a quarter of the points, for ExpandSurfaceReport::aliasing.
   bool estimate_aliasing = false;
 };

@@ -185,7 +185,7 @@ HWY_EXPORT(turn);
 
 namespace {
 
-constexpr int start_exponent = 16000; // of the squares of start values while they are multiplied up
+constexpr int start_exponent = 16000; // exponent of the squares of start values while they are multiplied up
 
 // w_l(m)^2, l = m, m + 1, ...
 class Scale {

@@ -45,7 +45,7 @@ public:
   /// What the kernel reads: per block of `lanes` orders m' rows for l = first order ... lmax.
   struct Tables {
     int lmax = 0, blocks = 0;
-    std::vector<std::size_t> offset;               ///< of each block's first row, in doubles
+    std::vector<std::size_t> offset;               ///< where each block's first row begins, in doubles
     hwy::AlignedFreeUniquePtr<double[]> factor;    ///< m' w_l(m')^2; 0 for l < m'
     hwy::AlignedFreeUniquePtr<double[]> even, odd; ///< c w_l(m') times Re a_lm' and Im a_lm' where l + m is even, odd
     const double* row(const double* array, int block, int l) const {

@@ -18,8 +18,8 @@ struct OneWayDistance {
 };
 
 struct SurfaceDistance {
-  OneWayDistance forth; ///< of the first surface from the second
-  OneWayDistance back;  ///< of the second from the first
+  OneWayDistance forth; ///< distance of the first surface from the second
+  OneWayDistance back;  ///< distance of the second surface from the first
   double largest() const;
   double rms() const; ///< root of the mean of both squares
 };

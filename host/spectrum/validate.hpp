@@ -13,16 +13,16 @@ namespace cowgpu {
 /// One check of something that must stay within a bound.
 struct Check {
   std::string what;
-  double value = 0; ///< of degrees: the largest error over its estimate
+  double value = 0; ///< for degrees: the largest error over its estimate
   double bound = 0;
   int degree = -1; ///< where that was found; -1: no degree
   bool passed = false;
-  double relative = -1; ///< of degrees: the largest error over the norm, of degrees known to half of it; -1: none
+  double relative = -1; ///< for degrees: the largest error over the norm, of degrees known to half of it; -1: none
 };
 
 struct Validation {
   std::vector<Check> checks;
-  ErrorEstimate estimate; ///< of the CPU path's moments, without what a cut-off above the default leaves out
+  ErrorEstimate estimate; ///< estimate for the CPU path's moments, without what a cut-off above the default leaves out
 };
 
 /// Moments of `body` to `lmax` by the reference in extended precision, the CPU path on one and on all threads, and, if

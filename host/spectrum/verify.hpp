@@ -28,9 +28,9 @@ struct Accuracy {
 
   Verify how = Verify::none;
   std::uint64_t triangles = 0;
-  std::uint64_t seed = 0; ///< of the sample
+  std::uint64_t seed = 0; ///< seed of the sample
   std::vector<Agreement> agreements;
-  ErrorEstimate estimate; ///< of all triangles; empty if nothing was computed
+  ErrorEstimate estimate; ///< estimate for all triangles; empty if nothing was computed
 
   /// The agreement with the largest ratio; null if nothing was compared. What is not a number counts as largest.
   const Agreement* worst() const;
