@@ -104,7 +104,7 @@ std::string not_a_number(std::string_view text) {
       return "has a comma where numbers have a point: " + point.substr(0, all);
   }
   if (std::any_of(text.begin(), text.end(), is_blank)) return "has a blank in it";
-  return "is no number";
+  return "is not a number";
 }
 
 std::string not_whole(std::string_view text) {

@@ -86,7 +86,7 @@ Measure parse_measure(std::string_view option, std::string_view text, Dimension 
                                   rest.starts_with('X') || (!rest.empty() && rest[0] >= '0' && rest[0] <= '9'));
   if (!number || goes_on) {
     const std::string why = not_a_number(text);
-    throw refuse(why == "is no number" || text.empty() ? "there is no number" : "the number " + why);
+    throw refuse(why == "is not a number" || text.empty() ? "there is no number" : "the number " + why);
   }
   const double value = *number;
   std::string unit;

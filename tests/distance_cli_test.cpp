@@ -191,7 +191,7 @@ TEST_CASE("distance refuses what it cannot do with one line, a reason and an exi
   code({folder / "none.off", p}, 5, "cannot-read");
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"0,0,0\n1,2\n", "p.csv:2: x, y and z expected, found 2 numbers"},
-      {"0,0,0\n1,milk,3\n", "p.csv:2: a finite number expected; 'milk' is no number"},
+      {"0,0,0\n1,milk,3\n", "p.csv:2: a finite number expected; 'milk' is not a number"},
       {"0,0,0\n1,nan,3\n", "p.csv:2: a finite number expected; 'nan' is not finite"},
       {"0,0,0\n\n1,,3\n", "p.csv:3: a finite number expected; '' is empty"},
       {"0,0,0\n1,2,1e999\n", "p.csv:2: a finite number expected; '1e999' has no place in a double"},

@@ -164,7 +164,7 @@ TEST_CASE("glTF numbers that lead out of their place are refused", "[gltf][reade
       {"5126", "5130", "file-format", "5130"},
       {R"("nodes":[{"mesh":0}])", R"("nodes":[{"mesh":0,"scale":[1,1]}])", "file-syntax", "'scale' must be 3 numbers"},
       {R"("nodes":[{"mesh":0}])", R"("nodes":{"mesh":0})", "file-syntax", "must be a list"},
-      {R"("nodes":[{"mesh":0}])", R"("nodes":[0])", "file-syntax", "is no object"},
+      {R"("nodes":[{"mesh":0}])", R"("nodes":[0])", "file-syntax", "must be an object"},
       {R"("nodes":[{"mesh":0}])", R"("nodes":[{"mesh":0,"children":[-1]}],"scenes":[{"nodes":[0]}])", "file-syntax",
        "children"},
       {R"("nodes":[{"mesh":0}])", R"("nodes":[{"children":[1]},{"children":[0]}],"scenes":[{"nodes":[0]}])",

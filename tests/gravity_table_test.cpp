@@ -126,7 +126,7 @@ TEST_CASE("tables that are wrong are refused by line, and say what is known", "[
   CHECK_THAT(fault(header + header + rows), StartsWith("file-syntax: t.tab:2: a second header; line 1"));
   CHECK_THAT(fault("1738.0, nan, 1e-4, 2\n" + rows), StartsWith("file-syntax: t.tab:1: ") || Contains("second"));
   CHECK_THAT(fault("1738.0, 1, x, 2\n" + rows),
-             StartsWith("file-syntax: t.tab:1: a number expected; 'x' is no number"));
+             StartsWith("file-syntax: t.tab:1: a number expected; 'x' is not a number"));
   CHECK_THAT(fault("-1.5, 1, 1, 2\n" + rows), StartsWith("file-syntax: t.tab:1: r0 must be above 0"));
   CHECK_THAT(fault("1738.0, 1, 1, 2.5\n" + rows), StartsWith("file-syntax: t.tab:1: lmax is 2.5"));
   CHECK_THAT(fault("1738.0, 1, 1, 2, 2, 3\n" + rows), StartsWith("file-format: t.tab:1: the sixth value"));
@@ -243,7 +243,7 @@ TEST_CASE("a file of coefficients is told by what it holds", "[gravity-table][co
   CHECK(is_coefficient_file("missing.gfc"));
   write_text(folder / "words.tab", "nothing of the kind\n");
   CHECK_THAT(fault_of([&] { read_coefficient_set(folder / "words.tab"); }),
-             StartsWith("file-format: ") && Contains("no file of coefficients"));
+             StartsWith("file-format: ") && Contains("not a file of coefficients"));
 }
 
 TEST_CASE("every command that reads coefficients takes a table in kilometres", "[gravity-table][length-unit][cli]") {

@@ -124,7 +124,7 @@ TEST_CASE("PLY numbers of eight bytes are read, and refused by their value", "[p
   CHECK(outcome(file("int64", 3)).fault == "mesh-index-range");
   CHECK(outcome(file("int64", ~0ULL)).says("names vertex -1"));
   CHECK(outcome(file("uint64", ~0ULL)).fault == "mesh-index-range");
-  CHECK(outcome(file("int128", 2)).says("'int128' is no type"));
+  CHECK(outcome(file("int128", 2)).says("'int128' is not a type"));
 }
 
 TEST_CASE("PLY triangle strips become triangles, every second one turned, and -1 begins anew",
@@ -159,7 +159,7 @@ TEST_CASE("PLY properties announced twice are read once, and names may have blan
         std::vector<std::string>{"Properties of the vertices were skipped: Distance (m).",
                                  "Announced more than once, and read where announced first: y of vertex."});
   CHECK(outcome(replaced(triangle, "property float y", "property float")).fault == "file-syntax");
-  CHECK(outcome(replaced(triangle, "list uchar int", "list float int")).says("'float' is no type of whole numbers"));
+  CHECK(outcome(replaced(triangle, "list uchar int", "list float int")).says("'float' is not a type of whole numbers"));
 }
 
 TEST_CASE("PLY faces of one and two corners are left out and counted", "[ply-reader][readers]") {

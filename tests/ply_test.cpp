@@ -133,7 +133,7 @@ TEST_CASE("damaged PLY files are refused with the line or the byte", "[ply]") {
   };
   const std::vector<Case> cases = {
       {"", "file-truncated", ":0:"},
-      {"OFF\n", "file-format", "no PLY file"},
+      {"OFF\n", "file-format", "not a PLY file"},
       {replaced(whole, "binary_little_endian", "binary_big_endian"), "file-format", "x.ply:2: 'binary_big_endian"},
       {replaced(whole, "binary_little_endian", "ascii"), "file-format", "x.ply:2:"},
       {replaced(whole, "format binary", "farmat binary"), "file-syntax", "x.ply:2:"},

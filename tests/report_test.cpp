@@ -147,7 +147,7 @@ TEST_CASE("what is wrong with a report is said, and no page is written", "[repor
   write(other, "{\"schema\": \"cowgpu.tensors.v1\"}");
   refused({other}, 3, "file-format", "cowgpu expand");
   write(other, "{\"schema\": \"other.v1\"}");
-  refused({cow, "--physics", other}, 3, "file-format", "no document of cowgpu");
+  refused({cow, "--physics", other}, 3, "file-format", "not a document of cowgpu");
   write(other, "{\"schema\": \"cowgpu.tensors.v1\"}");
   refused({cow, "--physics", other}, 3, "file-format", "no findings to show");
   refused({cow, "--physics", cow}, 3, "file-format", "no findings to show");

@@ -105,7 +105,7 @@ TEST_CASE("a file of no surface expansion, or a damaged one, is a named error", 
              StartsWith("file-format: " + path) && Contains("--of stretch -o FILE.json"));
   CHECK_THAT(fault_of_reading(path, file_json("")), StartsWith("file-format: ") && Contains("no expansion"));
   CHECK_THAT(fault_of_reading(path, replaced(good, "cowgpu.result.v1", "cowgpu.map.v1")),
-             StartsWith("file-format: ") && Contains("no cowgpu.result.v1"));
+             StartsWith("file-format: ") && Contains("not cowgpu.result.v1"));
   CHECK_THAT(fault_of([&] { read_surface(folder / "none.json"); }), StartsWith("cannot-read: "));
   const std::vector<std::string> all = {
       "",

@@ -53,7 +53,7 @@ void add_run_options(CLI::App& command, Common& common) {
   command.add_option("--progress", common.progress, "auto (a line on a terminal), none, or jsonl on stderr")
       ->check(CLI::IsMember({"auto", "none", "jsonl"}))
       ->capture_default_str();
-  command.add_flag("--quiet,-q", common.quiet, "No talk on stderr");
+  command.add_flag("--quiet,-q", common.quiet, "Print errors only");
 }
 
 std::unique_ptr<Backend> open_backend(const Common& common, std::string* note) {

@@ -115,7 +115,7 @@ void add_notes(const Drop& d, std::vector<std::string>& notes) {
                               lands_within));
   if (d.result.torque.norm() == 0) notes.push_back("gravity exerts no torque on this body in this attitude");
   if (d.problem.body.radius > 0.01 * (d.problem.planet.radius + d.problem.height))
-    notes.push_back("the body is no small one beside the earth, which does not move here");
+    notes.push_back("the body is not small beside the earth, which is taken to be at rest");
 }
 
 Findings solve(const PhysicsOptions& common, const Options& options, ProgressStyle style) {

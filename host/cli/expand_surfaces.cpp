@@ -114,7 +114,7 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
                             map_file, of,
                             choice.maps.empty()      ? "none"
                             : choice.maps.size() > 1 ? "several"
-                                                     : "the flow, which is no map in a file"));
+                                                     : "the flow, whose map is not kept in a file"));
   return choice;
 }
 

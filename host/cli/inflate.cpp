@@ -57,10 +57,11 @@ std::vector<Level> parse_levels(const std::string& text) {
     if (word != star_word) {
       level.distance = read_number(word).value_or(0);
       if (!(level.distance > 0))
-        throw Error(Fault::bad_argument,
-                    fmt::format("--levels {}: \"{}\" is no level; there are numbers above 0 in the mesh's length unit, "
-                                "and star for the least that makes the body star-shaped, separated by commas",
-                                shown(text), shown(word)));
+        throw Error(
+            Fault::bad_argument,
+            fmt::format("--levels {}: \"{}\" is not a level; levels are numbers above 0 in the mesh's length unit, "
+                        "and star for the least that makes the body star-shaped, separated by commas",
+                        shown(text), shown(word)));
     }
     const bool known = std::any_of(levels.begin(), levels.end(), [&](const Level& l) { return l.key.text == word; });
     if (!known) levels.push_back(level);

@@ -41,11 +41,12 @@ std::vector<int> parse_orders(const std::vector<std::string>& lists, std::string
                     fmt::format("--order {}: the range \"{}\" runs backwards; write the lower order first", shown(list),
                                 shown(word)));
       if (!first || !last)
-        throw Error(Fault::bad_argument,
-                    fmt::format("--order {}: \"{}\" is no order; there are whole numbers from 0 to {}, ranges such as "
-                                "0..7{}, separated by commas",
-                                shown(list), shown(word), largest_surface_degree,
-                                whole.empty() ? "" : fmt::format(", and {} for the body itself", whole)));
+        throw Error(
+            Fault::bad_argument,
+            fmt::format("--order {}: \"{}\" is not an order; orders are whole numbers from 0 to {}, ranges such as "
+                        "0..7{}, separated by commas",
+                        shown(list), shown(word), largest_surface_degree,
+                        whole.empty() ? "" : fmt::format(", and {} for the body itself", whole)));
       for (int order = *first; order <= *last; ++order) add(order);
     }
   }

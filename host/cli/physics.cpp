@@ -79,7 +79,7 @@ void keep_paper_to_its_body(const PhysicsOptions& options, physics::Findings& fi
     return;
   findings.paper.clear();
   findings.notes.push_back(fmt::format("--recipe paper: units and settings are the paper's, but its numbers are about "
-                                       "its own mesh as it is, and {} is none to compare with them",
+                                       "its own mesh as it is, and {} cannot be compared with them",
                                        body.mesh));
 }
 

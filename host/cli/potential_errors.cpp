@@ -22,11 +22,10 @@ std::vector<double> parse_distances(const std::string& text) {
   for (std::string word; std::getline(words, word, ',');) {
     const auto value = read_number(word);
     if (!value || !(*value >= 1) || !(*value <= farthest_good))
-      throw Error(
-          Fault::bad_argument,
-          fmt::format("--distances {}: \"{}\" is none; they are numbers from 1 to {} between commas, in radii of "
-                      "the sphere that holds the body",
-                      text, word, farthest_good));
+      throw Error(Fault::bad_argument, fmt::format("--distances {}: \"{}\" is not a distance; distances are numbers "
+                                                   "from 1 to {} between commas, in radii of "
+                                                   "the sphere that holds the body",
+                                                   text, word, farthest_good));
     distances.push_back(*value);
   }
   return distances;

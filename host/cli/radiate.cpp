@@ -113,7 +113,7 @@ void check_wobble(const Eigen::Matrix3d& inertia, const Vec3& axis, std::vector<
   const double angle = std::atan2(spin.cross(axis).norm(), spin.dot(axis)) * 180 / std::numbers::pi;
   if (angle > 1e-6)
     notes.push_back(
-        fmt::format("the axis is no principal one: the angular momentum is {:.3g} degrees off it, and the body "
+        fmt::format("the axis is not a principal axis: the angular momentum is {:.3g} degrees off it, and the body "
                     "turns about it only where it is held",
                     angle));
 }
@@ -181,7 +181,7 @@ Radiation radiation(const PhysicsInput& input, const PhysicsOptions& common, con
   r.power = quadrupole_power(r.square, r.omega);
   if (r.square > 0 && !std::isnormal(double(r.power)))
     throw Error(Fault::bad_argument,
-                fmt::format("at {:.3g} rad/s this body radiates {:.3g} W, which is no number to compute with: give "
+                fmt::format("at {:.3g} rad/s this body radiates {:.3g} W, which doubles cannot hold: give "
                             "another --omega or --period, or another unit of length",
                             r.omega, r.power));
   if (r.moment) r.spin = spin_down(*r.moment, r.power, r.omega, r.time);

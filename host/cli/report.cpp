@@ -40,7 +40,7 @@ std::vector<SurfaceFile> read_surfaces(const std::string& path, const json& docu
   std::vector<SurfaceFile> files;
   const json& expansions = result_json::member(path, document, "expansions");
   if (!expansions.is_object())
-    throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' is no object", path));
+    throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' must be an object", path));
   for (const char* first : {"stretch", "harmonic", "smooth", "flow"})
     if (expansions.contains(first)) files.push_back(read_surface(path, first));
   for (const auto& [key, value] : expansions.items()) {
@@ -57,7 +57,7 @@ nlohmann::ordered_json read_findings(const std::string& path) {
                                  ? document["schema"].get<std::string>()
                                  : "";
   if (schema.rfind("cowgpu.", 0) != 0)
-    throw Error(Fault::file_format, fmt::format("{}: this JSON is no document of cowgpu; take what `cowgpu tensors "
+    throw Error(Fault::file_format, fmt::format("{}: this JSON is not a document of cowgpu; take what `cowgpu tensors "
                                                 "--json`, `radiate --json` and the like print",
                                                 path));
   for (const char* member : {"input", "units", "notes"})

@@ -72,7 +72,8 @@ SurfaceSource source_of_set(const std::string& file, const std::string& of, bool
   source.mesh = set.provenance.mesh;
   source.notes = set.notes;
   if (!(spherical_radius(source.expansion) > 0))
-    throw Error(Fault::file_format, fmt::format("{}: the coefficient (0, 0) of f_r is no mean distance above 0", file));
+    throw Error(Fault::file_format,
+                fmt::format("{}: the coefficient (0, 0) of f_r must be above 0: it gives the mean distance", file));
   metric = set.length_unit == "m";
   return source;
 }

@@ -32,7 +32,7 @@ CoefficientSet read_coefficient_set(const std::filesystem::path& path, const std
     throw Error(bytes.empty() ? Fault::file_truncated : Fault::file_format,
                 bytes.empty()
                     ? name + ": the file is empty"
-                    : fmt::format("{}: this is no file of coefficients: JSON and CSV of this program, netCDF, "
+                    : fmt::format("{}: this is not a file of coefficients: JSON and CSV of this program, netCDF, "
                                   "ICGEM's .gfc, and tables with rows degree, order, C, S are read",
                                   name));
   const CoefficientFormat format =

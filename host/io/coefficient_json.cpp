@@ -33,12 +33,12 @@ std::string number_text(double value) {
 }
 
 std::string text_of(const std::string& name, const json& value, const char* key) {
-  if (!value.is_string()) throw Error(Fault::file_syntax, fmt::format("{}: the member '{}' is no text", name, key));
+  if (!value.is_string()) throw Error(Fault::file_syntax, fmt::format("{}: the member '{}' must be a text", name, key));
   return one_line(value.get<std::string>());
 }
 
 std::vector<std::string> words_of(const std::string& name, const json& value, const char* key) {
-  if (!value.is_array()) throw Error(Fault::file_syntax, fmt::format("{}: the member '{}' is no list", name, key));
+  if (!value.is_array()) throw Error(Fault::file_syntax, fmt::format("{}: the member '{}' must be a list", name, key));
   std::vector<std::string> words;
   for (const json& word : value) words.push_back(text_of(name, word, key));
   return words;
@@ -68,13 +68,13 @@ Metadata metadata_in(const std::string& name, const json& all) {
   if (all.contains("provenance")) {
     const json& provenance = all.at("provenance");
     if (!provenance.is_object())
-      throw Error(Fault::file_syntax, fmt::format("{}: the member 'provenance' is no object", name));
+      throw Error(Fault::file_syntax, fmt::format("{}: the member 'provenance' must be an object", name));
     for (const char* key : provenance_words) take(provenance, key);
   }
   if (all.contains("remarks")) {
     const json& remarks = all.at("remarks");
     if (!remarks.is_object())
-      throw Error(Fault::file_syntax, fmt::format("{}: the member 'remarks' is no object", name));
+      throw Error(Fault::file_syntax, fmt::format("{}: the member 'remarks' must be an object", name));
     for (const auto& [key, value] : remarks.items()) metadata["remark." + key] = {text_of(name, value, "remarks"), 0};
   }
   return metadata;
@@ -194,7 +194,7 @@ CoefficientSet parse_json_coefficients(const std::string& bytes, const std::stri
   if (schema == "cowgpu.result.v1") return read_result(name, all, of);
   if (schema != "cowgpu.coefficients.v1")
     throw Error(Fault::file_format,
-                fmt::format("{}: this JSON is no cowgpu.result.v1 and no cowgpu.coefficients.v1; take a file that "
+                fmt::format("{}: this JSON is neither cowgpu.result.v1 nor cowgpu.coefficients.v1; take a file that "
                             "`cowgpu expand -o FILE.json` or `cowgpu convert` wrote",
                             name));
   if (!of.empty())

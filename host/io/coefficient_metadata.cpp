@@ -61,7 +61,7 @@ public:
   }
   double number(const std::string& key, const MetadataText& at, std::string_view word) const {
     const auto value = read_number(word);
-    if (!value) fail(at, fmt::format("{} is '{}', and that is no finite number", key, shown(word)));
+    if (!value) fail(at, fmt::format("{} is '{}', and must be a finite number", key, shown(word)));
     return *value;
   }
   void number(const std::string& key, std::optional<double>& into, bool positive) const {
@@ -231,7 +231,7 @@ double remark_number(const CoefficientSet& set, const std::string& file, std::st
     if (key != word) continue;
     const auto value = read_number(text);
     if (!value)
-      throw Error(Fault::file_syntax, fmt::format("{}: the remark {} is '{}', and that is no finite number", file,
+      throw Error(Fault::file_syntax, fmt::format("{}: the remark {} is '{}', and must be a finite number", file,
                                                   shown(word, 60), shown(text)));
     return *value;
   }

@@ -145,7 +145,7 @@ private:
     if (const auto q = document_.numbers(node, "rotation", 4, what)) {
       const Eigen::Quaterniond rotation((*q)[3], (*q)[0], (*q)[1], (*q)[2]);
       if (!(std::abs(rotation.norm() - 1) < 1e-2))
-        document_.fail(Fault::file_syntax, what, "its rotation is no unit quaternion.");
+        document_.fail(Fault::file_syntax, what, "its rotation is not a unit quaternion.");
       placement.matrix = rotation.normalized().toRotationMatrix();
     }
     if (const auto s = document_.numbers(node, "scale", 3, what)) placement.matrix *= vector(*s).asDiagonal();

@@ -67,7 +67,7 @@ public:
   bool parse_error(std::size_t position, const std::string&, const Json::exception&) override {
     document_.fail(alone_ && position > text_.size() ? Fault::file_truncated : Fault::file_syntax,
                    fmt::format("byte {} of the JSON", position),
-                   "this is no JSON, or a number beyond double precision. Fetch or export it again.");
+                   "this is not JSON, or it holds a number beyond double precision. Fetch or export it again.");
   }
 
 private:
@@ -305,7 +305,7 @@ const Json& GltfDocument::object(const char* key, std::uint64_t index, const std
   if (index >= all.size())
     fail(Fault::file_syntax, what,
          fmt::format("it names {} of '{}', but there are {}, numbered from 0.", index, key, all.size()));
-  if (!all[index].is_object()) fail(Fault::file_syntax, what, fmt::format("{} of '{}' is no object.", index, key));
+  if (!all[index].is_object()) fail(Fault::file_syntax, what, fmt::format("{} of '{}' must be an object.", index, key));
   return all[index];
 }
 
@@ -325,7 +325,7 @@ std::string_view GltfDocument::buffer(std::uint64_t index, const std::string& wh
       const std::size_t at = text.substr(0, 200).find(mark);
       if (at == std::string_view::npos) fail(Fault::file_format, self, "its data: URI is not base64.");
       decoded_[index] = from_base64(text.substr(at + mark.size()));
-      if (!decoded_[index]) fail(Fault::file_syntax, self, "its data: URI is no base64.");
+      if (!decoded_[index]) fail(Fault::file_syntax, self, "its data: URI is not base64.");
     }
     bytes = *decoded_[index];
   } else {

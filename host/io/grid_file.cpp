@@ -160,7 +160,7 @@ GridKind kind_of(const Raw& raw, std::optional<GridKind> wanted, std::size_t rin
                                                 "is; name it with --grid gl, cc, dh, dh1 or f1{}",
                                                 raw.name, cells ? "; its rings are those of f1 (cell-centred)" : ""));
   if (!cells || rings < 2 || kind == GridKind::gauss_legendre || kind == GridKind::fejer) return *kind;
-  notes.push_back(fmt::format("the rings are the centres of cells, which is no {} grid: taken as f1", name(*kind)));
+  notes.push_back(fmt::format("the rings are the centres of cells, which is not a {} grid: taken as f1", name(*kind)));
   return GridKind::fejer;
 }
 
@@ -187,7 +187,7 @@ GridFile build(Raw raw, std::optional<GridKind> wanted) {
   if (no_south_pole && rings > 1 && near(cut.turned ? raw.lats.front() : raw.lats.back(), -90, raw.tolerance)) {
     --rings;
     cut.skipped = cut.turned;
-    file.notes.push_back("the row at 90 S is no part of a dh grid and was left out");
+    file.notes.push_back("the row at 90 S is not part of a dh grid and was left out");
   }
   const GridKind kind = kind_of(raw, wanted, rings, length, file.notes);
   try {

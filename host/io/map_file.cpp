@@ -28,12 +28,12 @@ std::string face_text(const Face& f) {
 void require_faces(const PlyMesh& file, const std::vector<Face>& faces, const std::string& name) {
   const auto advice = "take the file that `cowgpu map` wrote for this very mesh";
   if (file.faces.size() != faces.size())
-    throw Error(Fault::file_format, fmt::format("{} has {} faces and the mesh {}: it is no map of this mesh; {}", name,
-                                                file.faces.size(), faces.size(), advice));
+    throw Error(Fault::file_format, fmt::format("{} has {} faces and the mesh {}: it is not a map of this mesh; {}",
+                                                name, file.faces.size(), faces.size(), advice));
   const auto [there, here] = std::mismatch(file.faces.begin(), file.faces.end(), faces.begin());
   if (there != file.faces.end())
     throw Error(Fault::file_format,
-                fmt::format("face {} of {} is {} and that of the mesh {}: it is no map of this mesh; {}",
+                fmt::format("face {} of {} is {} and that of the mesh {}: it is not a map of this mesh; {}",
                             here - faces.begin(), name, face_text(*there), face_text(*here), advice));
 }
 
@@ -88,8 +88,8 @@ SphereMap read_map(std::string_view bytes, const std::string& name, const Manifo
   PlyMesh file = read_ply_positions(bytes, name);
   const std::size_t vertices = surface.vertices().size();
   if (file.vertices.size() != vertices)
-    throw Error(Fault::file_format, fmt::format("{} has {} vertices and the mesh {}: it is no map of this mesh", name,
-                                                file.vertices.size(), vertices));
+    throw Error(Fault::file_format, fmt::format("{} has {} vertices and the mesh {}: it is not a map of this mesh",
+                                                name, file.vertices.size(), vertices));
   require_faces(file, surface.faces(), name);
   require_story(file, surface.closed().mesh(), method, name);
 

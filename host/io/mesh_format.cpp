@@ -121,8 +121,8 @@ const MeshFormat& mesh_format_of(std::string_view bytes, const std::string& name
   if (bytes.empty()) refuse(Fault::file_truncated, "the file is empty. Fetch or export it again.");
   const std::string_view word = WordScanner(without_byte_order_mark(bytes)).word();
   refuse(Fault::file_format,
-         fmt::format("this is no mesh: it begins with '{}'. Read are {}; export the mesh as one of these.", shown(word),
-                     names));
+         fmt::format("this is not a mesh file: it begins with '{}'. Read are {}; export the mesh as one of these.",
+                     shown(word), names));
   return formats[off]; // refuse() throws
 }
 

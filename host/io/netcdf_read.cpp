@@ -344,7 +344,7 @@ NetcdfFile parse_netcdf(std::string bytes, const std::string& name) {
   if (!bytes.starts_with("\x89HDF\r\n\x1a\n") && !bytes.starts_with("CDF\x01") && !bytes.starts_with("CDF\x02") &&
       !bytes.starts_with("CDF\x05"))
     throw Error(Fault::file_format,
-                fmt::format("{}: this is no netCDF file: it begins with neither HDF nor CDF; a name "
+                fmt::format("{}: this is not a netCDF file: it begins with neither HDF nor CDF; a name "
                             "that ends in .csv is read as text",
                             name));
   Ends results, reasons;

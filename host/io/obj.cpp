@@ -123,7 +123,7 @@ public:
     }
     if (empty) fail(Fault::file_truncated, "the file is empty. Fetch or export it again.");
     if (known_ == 0)
-      fail(Fault::file_format, fmt::format("this is no OBJ file: it has no statement of OBJ, but '{}'.",
+      fail(Fault::file_format, fmt::format("this is not an OBJ file: it has no statement of OBJ, but '{}'.",
                                            fmt::join(unknown_words_, "', '")));
     notes();
     return std::move(mesh_);
@@ -163,7 +163,7 @@ private:
 
   void unknown(std::string_view word) {
     if (!may_be_keyword(word) || same_word(word, "v") || same_word(word, "f") || same_word(word, "fo"))
-      fail_syntax(fmt::format("'{}' is no statement of an OBJ file.", shown(word)));
+      fail_syntax(fmt::format("'{}' is not a statement of an OBJ file.", shown(word)));
     ++unknown_lines_;
     const std::string text = shown(word);
     if (unknown_words_.size() < 8 &&

@@ -95,7 +95,7 @@ private:
       fail(Fault::file_format,
            wide ? "the file is UTF-16 text. Save it as UTF-8 or ASCII."
                 : fmt::format(
-                      "this is no OFF file: it begins with '{}' where the word OFF belongs. Export the mesh as OFF "
+                      "this is not an OFF file: it begins with '{}' where the word OFF belongs. Export the mesh as OFF "
                       "(MeshLab, Blender and meshio do), or add the header if it is missing.",
                       shown(word)));
     }

@@ -106,7 +106,7 @@ public:
     if (!S_ISREG(place_.status.st_mode) && !S_ISDIR(place_.status.st_mode) && !laid_by_us(place_.status, folder()))
       throw Error(
           Fault::cannot_write,
-          fmt::format("{}: this is no file but a fifo or a device of another user (number {}), in a folder where "
+          fmt::format("{}: this is not a file but a fifo or a device of another user (number {}), in a folder where "
                       "others can put such things: nothing is written to it; give another name",
                       path_.string(), place_.status.st_uid));
     return std::move(place_);

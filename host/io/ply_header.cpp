@@ -35,7 +35,7 @@ public:
   PlyHeader read() {
     if (!starts_as_ply(bytes_))
       fail(bytes_.empty() ? Fault::file_truncated : Fault::file_format,
-           "this is no PLY file: its first line is not 'ply'.");
+           "this is not a PLY file: its first line is not 'ply'.");
     const std::size_t end = bytes_.find_first_of("\r\n"), after = end + 1;
     line_end_ = bytes_.substr(end, 1);
     if (const std::string_view two = bytes_.substr(end, 2); two == "\r\n" || two == "\n\r") line_end_ = two;
@@ -52,7 +52,7 @@ public:
         else if (words[0] == "property")
           property(words);
         else
-          fail(Fault::file_syntax, fmt::format("'{}' is no word of a PLY header.", shown(words[0])));
+          fail(Fault::file_syntax, fmt::format("'{}' is not a word of a PLY header.", shown(words[0])));
       }
     }
     header_.size = at_;
@@ -116,7 +116,7 @@ private:
     else if (words[1] == "binary_big_endian")
       header_.encoding = PlyEncoding::big_endian;
     else
-      fail(Fault::file_format, fmt::format("'{}' is no format of PLY files.", shown(words[1])));
+      fail(Fault::file_format, fmt::format("'{}' is not a format of PLY files.", shown(words[1])));
     if (words[2] != "1.0")
       fail(Fault::file_format, fmt::format("PLY of version '{}' is not read, only 1.0.", shown(words[2])));
   }
@@ -150,13 +150,14 @@ private:
            "length, a type and a name.");
     const auto type = [&](std::string_view word) {
       const auto known = type_named(word);
-      if (!known) fail(Fault::file_syntax, fmt::format("'{}' is no type of a PLY property.", shown(word)));
+      if (!known) fail(Fault::file_syntax, fmt::format("'{}' is not a type of a PLY property.", shown(word)));
       return *known;
     };
     property.type = type(words[name_at - 1]);
     if (property.is_list) property.count_type = type(words[2]);
     if (is_real(property.count_type))
-      fail(Fault::file_syntax, fmt::format("'{}' is no type of whole numbers for a list's length.", shown(words[2])));
+      fail(Fault::file_syntax,
+           fmt::format("'{}' is not a type of whole numbers for a list's length.", shown(words[2])));
     property.name = {words[name_at].data(),
                      static_cast<std::size_t>(words.back().data() + words.back().size() - words[name_at].data())};
     PlyElement& owner = header_.elements.back();

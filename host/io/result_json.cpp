@@ -82,7 +82,8 @@ json read(const std::filesystem::path& path) {
   if (member(name, all, "schema") != "cowgpu.result.v1")
     throw Error(
         Fault::file_format,
-        fmt::format("{}: this JSON is no cowgpu.result.v1; take a file that `cowgpu expand -o FILE.json` wrote", name));
+        fmt::format("{}: this JSON is not cowgpu.result.v1; take a file that `cowgpu expand -o FILE.json` wrote",
+                    name));
   return all;
 }
 
@@ -95,7 +96,8 @@ const json& member(const std::string& name, const json& object, const char* key)
 
 double number(const std::string& name, const json& object, const char* key) {
   const json& value = member(name, object, key);
-  if (!value.is_number()) throw Error(Fault::file_format, fmt::format("{}: the member '{}' is no number", name, key));
+  if (!value.is_number())
+    throw Error(Fault::file_format, fmt::format("{}: the member '{}' must be a number", name, key));
   return value.get<double>();
 }
 
@@ -119,8 +121,9 @@ Placement placement(const std::string& name, const json& document) {
     }
   }
   if (!matrix || !placement.rotation.isUnitary(1e-9) || !(placement.rotation.determinant() > 0))
-    throw Error(Fault::file_format,
-                fmt::format("{}: mesh.placement is no length above 0 (metres_per_unit) and rotation matrix", name));
+    throw Error(
+        Fault::file_format,
+        fmt::format("{}: mesh.placement must hold a length above 0 (metres_per_unit) and a rotation matrix", name));
   return placement;
 }
 
@@ -153,7 +156,7 @@ SphereCoefficients rows(const std::string& name, const json& object, int fields,
   const json& lmax = member(name, object, "lmax");
   const json& rows = member(name, object, "coefficients");
   if (!lmax.is_number_integer() || lmax < 0 || lmax > largest)
-    throw Error(Fault::file_format, fmt::format("{}: lmax is no whole number from 0 to {}", name, largest));
+    throw Error(Fault::file_format, fmt::format("{}: lmax must be a whole number from 0 to {}", name, largest));
   if (!rows.is_array() || rows.size() != SphereCoefficients::count(lmax.get<int>()))
     throw Error(Fault::file_format,
                 fmt::format("{}: {} coefficients do not fit lmax {}, which has {}", name, rows.size(), lmax.get<int>(),

@@ -116,7 +116,7 @@ private:
     if (word.empty()) fail(Fault::file_truncated, scan.line(), "the file is empty. Fetch or export it again.");
     if (!same_word(word, "solid"))
       fail(Fault::file_format, scan.line(),
-           fmt::format("this is no STL file: it begins with '{}' where the word solid belongs.", shown(word)));
+           fmt::format("this is not an STL file: it begins with '{}' where the word solid belongs.", shown(word)));
     // Less than this no facet takes: "facet normal 0 0 0 outer loop vertex 0 0 0 ... endloop endfacet".
     mesh_.faces.reserve(bytes_.size() / 88);
     mesh_.face_lines.reserve(bytes_.size() / 88);

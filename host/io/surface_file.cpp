@@ -23,7 +23,7 @@ using result_json::member;
 std::string chosen(const std::string& name, const json& expansions, const std::string& of) {
   std::vector<std::string> there;
   if (!expansions.is_object())
-    throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' is no object", name));
+    throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' must be an object", name));
   for (const auto& [key, value] : expansions.items())
     if (key != "mass") there.push_back(key);
   const auto has = [&](const std::string& key) { return std::find(there.begin(), there.end(), key) != there.end(); };
@@ -47,7 +47,7 @@ std::string chosen(const std::string& name, const json& expansions, const std::s
 
 std::string text(const std::string& name, const json& object, const char* key) {
   const json& value = member(name, object, key);
-  if (!value.is_string()) throw Error(Fault::file_format, fmt::format("{}: the member '{}' is no text", name, key));
+  if (!value.is_string()) throw Error(Fault::file_format, fmt::format("{}: the member '{}' must be a text", name, key));
   return one_line(value.get<std::string>());
 }
 

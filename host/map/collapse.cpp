@@ -126,7 +126,7 @@ public:
     }
     if (left_ != 4)
       throw Error(Fault::map_failed,
-                  "the surface could not be simplified to a tetrahedron: it is no triangulated sphere, "
+                  "the surface could not be simplified to a tetrahedron: it is not a triangulated sphere, "
                   "perhaps because two edges join the same vertices. Use another method of mapping");
     return std::move(steps_);
   }

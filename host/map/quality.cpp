@@ -123,7 +123,7 @@ std::vector<std::string> in_words(const MapQuality& q) {
     s.emplace_back("The map is inside-out: what is counter-clockwise on the body is clockwise on the sphere");
   if (std::abs(std::abs(q.degree) - 1) > 1e-6)
     s.push_back(fmt::format(
-        "The triangles cover the sphere {:.3g} times: this is no map of a closed surface of genus 0", q.degree));
+        "The triangles cover the sphere {:.3g} times: this is not a map of a closed surface of genus 0", q.degree));
   if (q.flipped.empty() && q.flat.empty())
     s.push_back(fmt::format("None of the {} triangles is flipped{}", q.triangles,
                             std::abs(std::abs(q.degree) - 1) > 1e-6 ? "" : ": the map is one-to-one"));

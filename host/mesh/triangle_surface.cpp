@@ -61,7 +61,7 @@ void check(const TriangleSurface& surface) {
   for (std::size_t v = 0; v < surface.normals.size(); ++v)
     if (!(std::abs(surface.normals[v].norm() - 1) <= 1e-6))
       throw Error(surface.normals[v].allFinite() ? Fault::bad_argument : Fault::mesh_not_finite,
-                  fmt::format("{}: the normal of vertex {} is no unit vector", surface.name, v));
+                  fmt::format("{}: the normal of vertex {} is not a unit vector", surface.name, v));
   std::set<std::string> taken = {"x", "y", "z", "nx", "ny", "nz"};
   for (const VertexScalar& scalar : surface.scalars) {
     check_name(surface, scalar.name, taken);

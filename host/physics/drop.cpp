@@ -190,7 +190,7 @@ void check_height(const DropProblem& problem) {
                             problem.height));
   if (problem.height > 1e6 * problem.planet.radius)
     throw Error(Fault::bad_argument,
-                fmt::format("a height of {} m is no fall to a ground of radius {} m: give a lower --height",
+                fmt::format("a height of {} m is too far from a ground of radius {} m: give a lower --height",
                             problem.height, problem.planet.radius));
   if (problem.planet.hill_radius > 0 && problem.planet.radius + problem.height > problem.planet.hill_radius)
     throw Error(Fault::bad_argument,

@@ -46,7 +46,8 @@ constexpr std::array list = {
         "pi, "
         "torque is taken about the barycentre with lever ||(p - b) x y||",
         "its y component; p; (pi - theta, phi + pi); about the pivot, or with friction's torque, with lever p_z - b_z",
-        "y is up; theta + pi is no colatitude; the fore-aft part of p - b gives no torque about x, about which the cow "
+        "y is up; theta + pi is not a colatitude; the fore-aft part of p - b gives no torque about x, about which the "
+        "cow "
         "tips",
         "cowgpu tip"},
     Erratum{12, "star-shaped: the segment from the origin to x lies in the cow C", "in the image phi(C)",

@@ -280,7 +280,8 @@ void check(const Profile& profile) {
                                                    i + 1, profile.time[i]));
   }
   if (!std::isfinite(profile.impulse()))
-    throw Error(Fault::bad_argument, "the impulse of the push is no finite number: its forces are too large");
+    throw Error(Fault::bad_argument,
+                "the impulse of the push is not finite: its forces are too large, give smaller ones");
 }
 
 PushResult push(const Rocker& rocker, const Profile& profile, const Monitor& monitor) {

@@ -29,7 +29,7 @@ Vec unit_vector(const Vec3& axis) {
   const Real norm = axis.cast<Real>().norm();
   if (!(norm > 0) || !std::isfinite(norm))
     throw Error(Fault::bad_argument,
-                fmt::format("the axis ({}, {}, {}) is no direction: it must have a finite length above 0", axis.x(),
+                fmt::format("the axis ({}, {}, {}) is not a direction: it must have a finite length above 0", axis.x(),
                             axis.y(), axis.z()));
   return axis.cast<Real>() / norm;
 }

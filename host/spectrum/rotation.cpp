@@ -87,7 +87,7 @@ EulerAngles euler_angles(const Eigen::Matrix3d& r) {
   const double departure = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= 1e-9) || !(r.determinant() > 0))
     throw Error(Fault::bad_argument,
-                fmt::format("a matrix that is no rotation: R R^T differs from 1 by {:.3g}, the determinant is {:.3g}; "
+                fmt::format("the matrix is not a rotation: R R^T differs from 1 by {:.3g}, the determinant is {:.3g}; "
                             "1e-9 and a positive one are asked for",
                             departure, r.determinant()));
   const double sine = std::hypot(r(0, 2), r(1, 2));

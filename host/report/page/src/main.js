@@ -267,7 +267,7 @@ function openBody(hover) {
     body = new SoftwareBody(canvas);
     $("body").dataset.by = "software";
     $("body-panel").append(
-      el("p", { class: "quiet" }, "WebGL is not to be had here, so the body is drawn without it, more slowly."),
+      el("p", { class: "quiet" }, "WebGL is not available, so the body is drawn without it, more slowly."),
     );
   }
   $("body").append(canvas);

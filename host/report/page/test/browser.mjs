@@ -446,7 +446,7 @@ test("where there is no WebGL the body is drawn all the same, and says so", asyn
   try {
     const page = await openIn(plain, "cow.html");
     assert.equal(await page.$eval("#body", (body) => body.dataset.by), "software");
-    assert.match(await words(page, "#body-panel"), /WebGL is not to be had here/);
+    assert.match(await words(page, "#body-panel"), /WebGL is not available/);
     assert.deepEqual(
       page.said.filter((line) => !/WebGL/.test(line)),
       [],
