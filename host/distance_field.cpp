@@ -29,7 +29,7 @@ void check_distance_surface(std::span<const Vec3> vertices, std::span<const Face
     for (const std::uint32_t v : faces[f]) {
       if (v >= vertices.size())
         throw Error(Fault::mesh_index_range,
-                    fmt::format("face {} names vertex {}; there are {}", f, v, vertices.size()));
+                    fmt::format("face {} names vertex {}, but there are {} vertices", f, v, vertices.size()));
       if (!vertices[v].allFinite())
         throw Error(Fault::mesh_not_finite, fmt::format("vertex {} has a coordinate that is not finite", v));
       low = low.cwiseMin(vertices[v]);

@@ -94,7 +94,7 @@ std::optional<std::uint64_t> read_natural(std::string_view text) {
 std::string not_a_number(std::string_view text) {
   if (text.empty()) return "is empty";
   const std::size_t length = length_of_number(text);
-  if (length && !converted<double>(text.substr(0, length))) return "has no place in a double";
+  if (length && !converted<double>(text.substr(0, length))) return "is beyond the range of doubles";
   if (is_named(text)) return "is not finite";
   if (is_hexadecimal(text)) return "is hexadecimal; numbers are decimal";
   if (const std::size_t comma = text.find(','); comma != std::string_view::npos) {

@@ -235,8 +235,8 @@ double SphereGrid::longitude_degrees(int j) const {
 
 SphereGrid make_grid(GridKind kind, int lmax) {
   if (lmax < 0 || lmax > largest_grid_degree)
-    throw Error(Fault::bad_argument,
-                fmt::format("degree {} of a grid: 0 to {} are possible", lmax, largest_grid_degree));
+    throw Error(Fault::bad_argument, fmt::format("a grid of degree {} cannot be made: degrees 0 to {} are possible",
+                                                 lmax, largest_grid_degree));
   const int longitudes = smooth_at_least(2 * lmax + 1);
   switch (kind) {
   case GridKind::gauss_legendre: return filled(kind, lmax, lmax + 1, longitudes);
@@ -245,7 +245,7 @@ SphereGrid make_grid(GridKind kind, int lmax) {
   case GridKind::driscoll_healy_square: return filled(kind, lmax, 2 * lmax + 2, 2 * lmax + 2);
   case GridKind::fejer: return filled(kind, lmax, 2 * lmax + 2, 4 * lmax + 4);
   }
-  throw Error(Fault::bad_argument, "a grid of no known kind");
+  throw Error(Fault::bad_argument, "the grid is of no known kind");
 }
 
 SphereGrid make_grid(GridKind kind, int rings, int ring_length) {

@@ -46,7 +46,7 @@ SphereTransform::SphereTransform(SphereGrid grid, int lmax) : grid_(std::move(gr
 void SphereTransform::check(int fields, std::size_t coefficients, std::size_t values) const {
   if (fields < 0 || fields > most_fields)
     throw Error(Fault::bad_argument,
-                fmt::format("{} fields in one transform: 0 to {} are possible", fields, most_fields));
+                fmt::format("one transform cannot take {} fields: 0 to {} are possible", fields, most_fields));
   const std::size_t n = std::size_t(fields);
   if (coefficients != n * SphereCoefficients::count(lmax_) || values != n * grid_.points())
     throw Error(Fault::bad_argument,

@@ -95,7 +95,7 @@ Measure parse_measure(std::string_view option, std::string_view text, Dimension 
   if (unit.empty()) return {value, false, {}};
   for (const Unit& known : units)
     if (known.dimension == dimension && known.name == unit) {
-      if (!std::isfinite(value * known.in_si)) throw refuse("it has no place in a double");
+      if (!std::isfinite(value * known.in_si)) throw refuse("it is beyond the range of doubles");
       return {value * known.in_si, true, known.name};
     }
   throw refuse(fmt::format("no unit is called {}", unit));

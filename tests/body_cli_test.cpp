@@ -45,7 +45,7 @@ TEST_CASE("body options that mean nothing are usage errors", "[body][cli]") {
   refused({"builtin:box", "--length-unit", ""}, "the value is empty");
   refused({"builtin:box", "--density", "water"}, "kg/m3");
   refused({"builtin:box", "--density", "0"}, "density");
-  refused({"builtin:box", "--length-unit", "3"}, "3 of what");
+  refused({"builtin:box", "--length-unit", "3"}, "it needs a unit");
   refused({"builtin:box", "--length-unit", "-3m"}, "above 0");
   refused({"builtin:box", "--length-unit", "0m"}, "above 0");
   refused({"builtin:box", "--length-unit", "furlong"}, "furlong");

@@ -250,7 +250,7 @@ TEST_CASE("netCDF files that hold no coefficients we can use are named errors", 
     CHECK_THAT(fault_of([&] { read_coefficients(path); }), StartsWith(fault) && Contains(words) && Contains(path));
   };
   refused("file-syntax", "normalization is missing", [](Foreign& f) { f.normalization.clear(); });
-  refused("file-syntax", "there are ortho", [](Foreign& f) { f.normalization = "5pi"; });
+  refused("file-syntax", "must be ortho", [](Foreign& f) { f.normalization = "5pi"; });
   refused("file-syntax", "csphase is missing", [](Foreign& f) { f.csphase = 0; });
   refused("file-syntax", "csphase is 2", [](Foreign& f) { f.csphase = 2; });
   refused("file-syntax", "csphase is missing", [](Foreign& f) { f.text_phase = true; });

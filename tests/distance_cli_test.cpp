@@ -194,7 +194,7 @@ TEST_CASE("distance refuses what it cannot do with one line, a reason and an exi
       {"0,0,0\n1,milk,3\n", "p.csv:2: a finite number expected; 'milk' is not a number"},
       {"0,0,0\n1,nan,3\n", "p.csv:2: a finite number expected; 'nan' is not finite"},
       {"0,0,0\n\n1,,3\n", "p.csv:3: a finite number expected; '' is empty"},
-      {"0,0,0\n1,2,1e999\n", "p.csv:2: a finite number expected; '1e999' has no place in a double"},
+      {"0,0,0\n1,2,1e999\n", "p.csv:2: a finite number expected; '1e999' is beyond the range of doubles"},
       {"x,y,height\n1,2,3\n", "p.csv:1: a line of names without one that is z"},
       {"9,0 9,0 9,0\n", "p.csv:1: blanks and commas both part the numbers of '9,0 9,0 9,0'"},
       {"x,y,z\n", "there is no point"},

@@ -225,7 +225,7 @@ TEST_CASE("gravity models that are wrong are named errors with file and line", "
       {"file-syntax", 17, replaced(good, "gfc 1 1", "gfc -1 1"), "the degree"},
       {"file-syntax", 15, replaced(good, "-0.484165371736E-03 0.0", "-0.484165371736E-03 0.5"), "order 0"},
       {"file-syntax", 19, replaced(good, "2.5e-6", "nan"), "finite"},
-      {"file-syntax", 19, replaced(good, "2.5e-6", "1e999"), "no place in a double"},
+      {"file-syntax", 19, replaced(good, "2.5e-6", "1e999"), "beyond the range of doubles"},
       {"file-syntax", 19, replaced(good, "2.5e-6", "2.5e-6x"), "a number expected"},
       {"file-truncated", 19, replaced(good, "2.5e-6 -1.4e-6 1e-12 1e-12", "2.5e-6"), "found 4 words"},
       {"file-truncated", 18, replaced(good, "gfc 2 2 2.5e-6 -1.4e-6 1e-12 1e-12\n", ""), "degree 2, order 2"},

@@ -145,7 +145,7 @@ TEST_CASE("glTF numbers that lead out of their place are refused", "[gltf][reade
       {R"("count":4)", R"("count":3.5)", "file-syntax", "'count'"},
       {R"("count":4)", R"("count":4,"byteOffset":9007199254740991)", "file-syntax", "do not fit"},
       {R"("count":12)", R"("count":12,"byteOffset":1)", "file-syntax", "accessor 1"},
-      {R"("count":12)", R"("count":11)", "file-syntax", "no whole number of triangles"},
+      {R"("count":12)", R"("count":11)", "file-syntax", "not a whole number of triangles"},
       {R"("byteLength":48})", R"("byteLength":48,"byteStride":11})", "file-syntax", "byteStride 11"},
       {R"("byteLength":48})", R"("byteLength":48,"byteStride":13})", "file-syntax", "accessor 0"},
       {R"("byteLength":48})", R"("byteLength":73})", "file-syntax", "bufferView 0"},

@@ -122,7 +122,7 @@ TEST_CASE("radiate says how a frequency is read, and refuses words that mean not
   refused(with({"--age", "1m"}), 2, "Gyr");
   refused(with({"--omega", "1e9rad/s"}), 2, "faster than light");
   refused(with({"--length-unit", "1m"}), 2, "leave one out");
-  refused({"radiate", "builtin:box", "--length", "3"}, 2, "3 of what");
+  refused({"radiate", "builtin:box", "--length", "3"}, 2, "it needs a unit");
   refused({"radiate", "builtin:box", "--length", "-3m"}, 2, "above 0");
   refused({"radiate", "builtin:box", "--part", "builtin:box=-1", "--origin", "mesh"}, 2, "change --density");
   refused({"radiate", "builtin:box", "--recipe", "paper", "--axis", "x"}, 2, "--recipe paper");

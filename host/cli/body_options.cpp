@@ -22,7 +22,7 @@ double parse_length(const BodyOptions& options) {
   const Measure length = parse_measure("--length", options.length, Dimension::length);
   if (!length.has_unit)
     throw Error(Fault::bad_argument,
-                fmt::format("--length {0}: {0} of what? It is the body's length, such as 2.5m", options.length));
+                fmt::format("--length {}: it needs a unit; it is the body's length, such as 2.5m", options.length));
   if (!(length.value > 0))
     throw Error(Fault::bad_argument, fmt::format("--length {}: it must be above 0", options.length));
   return length.value;

@@ -48,7 +48,7 @@ double parse_length_unit(const std::string& text) {
   if (!unit.has_unit)
     throw Error(
         Fault::bad_argument,
-        fmt::format("--length-unit {0}: {0} of what? It is the length that 1 in the file stands for, such as mm, km "
+        fmt::format("--length-unit {}: it needs a unit; it is the length that 1 in the file stands for, such as mm, km "
                     "or 2.3m",
                     text));
   if (!(unit.value > 0)) throw Error(Fault::bad_argument, fmt::format("--length-unit {}: it must be above 0", text));

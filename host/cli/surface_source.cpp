@@ -103,7 +103,7 @@ SurfaceSource load_surface(const SurfaceChoice& choice, int largest_order, Backe
 SurfaceFields parse_fields(const std::string& text) {
   if (text == "xyz") return SurfaceFields::xyz;
   if (text == "f") return SurfaceFields::f;
-  throw Error(Fault::bad_argument, fmt::format("--fields {}: there are xyz and f", text));
+  throw Error(Fault::bad_argument, fmt::format("--fields {}: it must be xyz or f", text));
 }
 
 // Eight points a wavelength where that is affordable, two and more always.

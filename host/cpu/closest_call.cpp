@@ -29,7 +29,8 @@ ClosestCall::ClosestCall(const plan::ClosestTree& tree, std::span<const Vec3> qu
     throw Error(Fault::mesh_open, "the surface has edges that are not run as often one way as the other, so it has no "
                                   "inside; ask for distances without sign");
   if (queries.size() >= no_face)
-    throw Error(Fault::too_large, fmt::format("{} queries at once; less than 2^32 are possible", queries.size()));
+    throw Error(Fault::too_large,
+                fmt::format("{} queries are too many at once; fewer than 2^32 are possible", queries.size()));
   result_.distance.resize(queries.size());
   result_.point.resize(queries.size());
   result_.face.resize(queries.size());

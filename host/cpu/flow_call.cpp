@@ -18,11 +18,13 @@ void check(std::span<const Vec3> starts, std::span<const Vec3> normals, const Fl
     throw Error(Fault::bad_argument,
                 fmt::format("the tolerance of a flow is 1e-12 to 1e-2, not {}", options.tolerance));
   if (!normals.empty() && (normals.size() != starts.size() || options.backward))
-    throw Error(Fault::bad_argument, options.backward
-                                         ? std::string("a backward flow takes no normals")
-                                         : fmt::format("{} normals for {} starts", normals.size(), starts.size()));
+    throw Error(Fault::bad_argument,
+                options.backward ? std::string("a backward flow takes no normals")
+                                 : fmt::format("the flow has {} normals and {} starts: pass one normal for each start",
+                                               normals.size(), starts.size()));
   if (starts.size() >= no_face)
-    throw Error(Fault::too_large, fmt::format("{} starts at once; less than 2^32 are possible", starts.size()));
+    throw Error(Fault::too_large,
+                fmt::format("{} starts are too many at once; fewer than 2^32 are possible", starts.size()));
   for (const auto list : {starts, normals})
     for (std::size_t i = 0; i < list.size(); ++i)
       if (!list[i].allFinite())

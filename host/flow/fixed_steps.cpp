@@ -11,9 +11,15 @@ namespace cowgpu {
 std::vector<Vec3> flow_fixed_steps(DistanceField& field, std::span<const Vec3> starts, std::span<const Vec3> normals,
                                    double time, int steps, Monitor& monitor) {
   if (starts.size() != normals.size())
-    throw Error(Fault::bad_argument, fmt::format("{} normals for {} starts", normals.size(), starts.size()));
+    throw Error(Fault::bad_argument,
+                fmt::format("the flow has {} normals and {} starts: pass one normal for each start", normals.size(),
+                            starts.size()));
   if (!(time >= 0) || !std::isfinite(time) || steps < 1)
-    throw Error(Fault::bad_argument, fmt::format("a flow for time {} in {} steps", time, steps));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format(
+            "a flow cannot be computed for time {} in {} steps: pass a finite time of 0 or more, and 1 step or more",
+            time, steps));
   const std::size_t n = starts.size();
   const double h = time / steps;
   std::vector<Vec3> x(starts.begin(), starts.end()), y(n), slope(n), sum(n);

@@ -87,7 +87,9 @@ std::vector<double> sheet_fields(std::span<const Vec3> vertices, std::span<const
   for (std::uint32_t f = 0; f < faces.size(); ++f) {
     for (const std::uint32_t v : faces[f])
       if (v >= positions.size())
-        throw Error(Fault::bad_argument, fmt::format("a face names vertex {} of {}", v, positions.size()));
+        throw Error(Fault::bad_argument,
+                    fmt::format("a face names vertex {}, but there are {} vertices: pass the faces of this mesh", v,
+                                positions.size()));
     const Vec3 &a = positions[faces[f][0]], &b = positions[faces[f][1]], &c = positions[faces[f][2]];
     const int sign = orientation(a, b, c);
     found.flipped_faces += sign < 0;

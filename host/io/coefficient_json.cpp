@@ -93,7 +93,8 @@ void take_values(const SphereCoefficients& a, CoefficientSet& set) {
 
 int field_count(const std::string& name, std::size_t fields) {
   if (fields < 1 || fields > std::size_t(most_fields))
-    throw Error(Fault::file_format, fmt::format("{}: {} fields; 1 to {} are possible", name, fields, most_fields));
+    throw Error(Fault::file_format,
+                fmt::format("{}: the file has {} fields; 1 to {} are possible", name, fields, most_fields));
   return int(fields);
 }
 

@@ -27,12 +27,12 @@ Convention convention_of(const NetcdfVariable& v, const std::string& where) {
   const NetcdfAttribute* normalisation = attribute(v.attributes, "normalization");
   const NetcdfAttribute* phase = attribute(v.attributes, "csphase");
   if (!normalisation || !normalisation->is_text)
-    throw Error(Fault::file_syntax, where + ": the attribute normalization is missing or no text");
+    throw Error(Fault::file_syntax, where + ": the attribute normalization is missing or not a text");
   if (!phase || phase->is_text)
-    throw Error(Fault::file_syntax, where + ": the attribute csphase is missing or no number");
+    throw Error(Fault::file_syntax, where + ": the attribute csphase is missing or not a number");
   const auto n = normalisation_named(normalisation->text);
   if (!n)
-    throw Error(Fault::file_syntax, fmt::format("{}: normalization is '{}'; there are ortho, 4pi, schmidt and unnorm",
+    throw Error(Fault::file_syntax, fmt::format("{}: normalization is '{}'; it must be ortho, 4pi, schmidt or unnorm",
                                                 where, shown(normalisation->text)));
   if (phase->number != 1 && phase->number != -1)
     throw Error(
@@ -66,8 +66,8 @@ std::vector<const NetcdfVariable*> coefficient_variables(const NetcdfFile& netcd
     throw Error(Fault::file_format,
                 fmt::format("{}: there is no variable with the dimensions (degree, order)", netcdf.name));
   if (fields.size() > std::size_t(most_fields))
-    throw Error(Fault::too_large,
-                fmt::format("{}: {} fields; at most {} are possible", netcdf.name, fields.size(), most_fields));
+    throw Error(Fault::too_large, fmt::format("{}: the file has {} fields; at most {} are possible", netcdf.name,
+                                              fields.size(), most_fields));
   sort_fields(fields);
   return fields;
 }
@@ -79,7 +79,7 @@ void read_values(const NetcdfVariable& v, int f, const std::string& where, Coeff
       const double value = present_value(v, i * n + j);
       if (!std::isfinite(value))
         throw Error(Fault::file_syntax,
-                    fmt::format("{}, row {}, column {}: {} is no finite number", where, i, j, value));
+                    fmt::format("{}, row {}, column {}: {} is not a finite number", where, i, j, value));
       if (j <= i)
         set.first[set.index(f, int(i), int(j))] = value;
       else
@@ -113,8 +113,8 @@ CoefficientSet parse_netcdf_coefficients(std::string bytes, const std::string& n
   const std::uint64_t n = netcdf.dimensions[fields[0]->dimensions[0]].length;
   if (n < 1 || n > largest_file_degree + 1 || n != netcdf.dimensions[fields[0]->dimensions[1]].length)
     throw Error(Fault::file_format,
-                fmt::format("{}: {} degrees and {} orders: both must be lmax + 1, at most {}", netcdf.name, n,
-                            netcdf.dimensions[fields[0]->dimensions[1]].length, largest_file_degree + 1));
+                fmt::format("{}: the file has {} degrees and {} orders: both must be lmax + 1, at most {}", netcdf.name,
+                            n, netcdf.dimensions[fields[0]->dimensions[1]].length, largest_file_degree + 1));
   check_count(netcdf, "degree");
   check_count(netcdf, "order");
   CoefficientSet set(int(n) - 1, int(fields.size()));
@@ -124,7 +124,7 @@ CoefficientSet parse_netcdf_coefficients(std::string bytes, const std::string& n
     const std::string where = fmt::format("{}: variable {}", netcdf.name, shown(v.name));
     const Convention convention = convention_of(v, where);
     if (f > 0 && convention != set.convention)
-      throw Error(Fault::file_format, where + ": another convention than the variables before it");
+      throw Error(Fault::file_format, where + " has another convention than the variables before it");
     set.convention = convention;
     read_values(v, int(f), where, set);
     if (const NetcdfAttribute* title = attribute(v.attributes, "title")) set.names[f] = one_line(title->text);

@@ -45,7 +45,8 @@ std::string read_all(int fd, const std::filesystem::path& path) {
     if (size == bytes.size()) {
       if (!S_ISREG(status.st_mode) && size > endless)
         throw Error(Fault::too_large,
-                    fmt::format("{}: no end after {} GiB; is it a device?", path.string(), size >> 30));
+                    fmt::format("{}: the file has not ended after {} GiB; name a file and not a device", path.string(),
+                                size >> 30));
       bytes.resize(2 * size);
     }
     const ssize_t got = ::read(fd, bytes.data() + size, bytes.size() - size);
@@ -63,7 +64,8 @@ std::string read_file(const std::filesystem::path& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.fd < 0) fail(path, errno);
   const auto too_large = [&] {
-    return Error(Fault::too_large, fmt::format("{}: there is no memory to hold this file.", path.string()));
+    return Error(Fault::too_large,
+                 fmt::format("{}: this machine has not enough memory to hold this file.", path.string()));
   };
   try {
     return read_all(file.fd, path);

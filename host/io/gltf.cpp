@@ -215,7 +215,7 @@ private:
       return primitive;
     }
     if (primitive.mode == triangles && corners % 3 != 0)
-      document_.fail(Fault::file_syntax, what, fmt::format("{} corners make no whole number of triangles.", corners));
+      document_.fail(Fault::file_syntax, what, fmt::format("{} corners are not a whole number of triangles.", corners));
     primitive.faces = primitive.mode == triangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
     return primitive;
   }

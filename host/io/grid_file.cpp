@@ -172,8 +172,8 @@ GridFile build(Raw raw, std::optional<GridKind> wanted) {
     damaged(raw.name, fmt::format("{} latitudes and {} longitudes: at most {} and {} are possible", rings, longest,
                                   most_rings, longest_ring));
   if (raw.names.size() > std::size_t(most_fields))
-    throw Error(Fault::too_large,
-                fmt::format("{}: {} fields; at most {} are possible", raw.name, raw.names.size(), most_fields));
+    throw Error(Fault::too_large, fmt::format("{}: the file has {} fields; at most {} are possible", raw.name,
+                                              raw.names.size(), most_fields));
   Cut cut;
   GridFile file;
   file.notes = std::move(raw.notes);
@@ -267,7 +267,7 @@ GridFile read_csv_grid(const std::filesystem::path& path, std::optional<GridKind
 
 const std::string& text_of(const NetcdfFile& netcdf, const char* key) {
   const NetcdfAttribute* a = attribute(netcdf.attributes, key);
-  if (!a || !a->is_text) damaged(netcdf.name, fmt::format("the global attribute {} is missing or no text", key));
+  if (!a || !a->is_text) damaged(netcdf.name, fmt::format("the global attribute {} is missing or not a text", key));
   return a->text;
 }
 
@@ -393,7 +393,7 @@ GridFile read_netcdf_grid(const std::filesystem::path& path, std::optional<GridK
   if (!ours) return file;
   const std::string place = netcdf.name + ": global attributes";
   const NetcdfAttribute* lmax = attribute(netcdf.attributes, "lmax");
-  if (!lmax || lmax->is_text) damaged(place, "lmax is missing or no number");
+  if (!lmax || lmax->is_text) damaged(place, "lmax is missing or not a number");
   if (!(lmax->number >= 0 && lmax->number <= file.grid.lmax) || lmax->number != std::floor(lmax->number))
     damaged(place, fmt::format("lmax is {}; from 0 to {} are possible on this grid", lmax->number, file.grid.lmax));
   file.lmax = int(lmax->number);

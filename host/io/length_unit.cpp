@@ -98,9 +98,9 @@ void settle_length_unit(CoefficientSet& set, std::optional<double> metres, bool 
   set.reference_radius = radius * unit;
   set.gm = gm * (unit * unit * unit);
   if (!std::isfinite(*set.reference_radius) || !std::isfinite(*set.gm))
-    throw Error(
-        Fault::bad_argument,
-        fmt::format("--length-unit: in units of {} m R = {} and GM = {} have no place in a double", unit, radius, gm));
+    throw Error(Fault::bad_argument,
+                fmt::format("--length-unit: in units of {} m R = {} and GM = {} are beyond the range of doubles", unit,
+                            radius, gm));
 }
 
 void state_length_unit(CoefficientSet& set, double metres, const std::string& file) {

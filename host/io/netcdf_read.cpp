@@ -207,7 +207,8 @@ void limit(int what, std::uint64_t value) {
 struct Ends {
   std::array<int, 2> fd = {-1, -1};
   Ends() {
-    if (pipe2(fd.data(), O_CLOEXEC) != 0) throw Error(Fault::cannot_read, "no pipe can be had to read a netCDF file");
+    if (pipe2(fd.data(), O_CLOEXEC) != 0)
+      throw Error(Fault::cannot_read, "a pipe to read a netCDF file could not be opened");
   }
   ~Ends() {
     shut(0);
@@ -349,7 +350,7 @@ NetcdfFile parse_netcdf(std::string bytes, const std::string& name) {
                             name));
   Ends results, reasons;
   const pid_t reader = fork();
-  if (reader < 0) throw Error(Fault::cannot_read, fmt::format("{}: no process can be had to read it", name));
+  if (reader < 0) throw Error(Fault::cannot_read, fmt::format("{}: a process to read it could not be started", name));
   if (reader == 0) run_reader(bytes, results.fd[1], reasons.fd[1]);
   results.shut(1);
   reasons.shut(1);

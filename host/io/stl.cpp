@@ -92,7 +92,8 @@ private:
     }
     if (found < count) truncated(fmt::format("the file ends after {} of {} facets.", found, count));
     if (count > most_facets)
-      throw Error(Fault::too_large, fmt::format("{}: {} facets; up to {} are read.", mesh_.name, count, most_facets));
+      throw Error(Fault::too_large,
+                  fmt::format("{}: the file has {} facets; up to {} are read.", mesh_.name, count, most_facets));
     mesh_.faces.reserve(count);
     mesh_.vertices.reserve(count / 2 + 2); // as many vertices as a closed surface of one shell has
     std::uint64_t attributes = 0;

@@ -77,7 +77,7 @@ SurfaceFile read_surface(const std::filesystem::path& path, const std::string& o
                 fmt::format("{}: the fields of {} are not f_r, f_dtheta, f_dphi, x, y, z", name, shown(file.name)));
   const std::string dphi = text(name, surface, "dphi");
   if (dphi != "signed" && dphi != "absolute")
-    throw Error(Fault::file_format, fmt::format("{}: dphi is '{}'; there are signed and absolute", name, shown(dphi)));
+    throw Error(Fault::file_format, fmt::format("{}: dphi is '{}'; it must be signed or absolute", name, shown(dphi)));
   const json& means = member(name, surface, "removed_means");
   SurfaceExpansion& expansion = file.expansion;
   expansion.signed_dphi = dphi == "signed";

@@ -20,13 +20,16 @@ constexpr std::size_t together = std::size_t(1) << 20;
 
 SphereSamples closest_samples(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
                               Monitor& monitor) {
-  if (faces.empty()) throw Error(Fault::bad_argument, "the closest point of a map without faces");
+  if (faces.empty())
+    throw Error(Fault::bad_argument, "a map without faces has no closest point: pass the faces of its mesh");
   SphereSamples result;
   std::vector<std::uint8_t> flipped;
   for (const Face& face : faces) {
     for (const std::uint32_t v : face)
       if (v >= positions.size())
-        throw Error(Fault::bad_argument, fmt::format("a face names vertex {} of {}", v, positions.size()));
+        throw Error(Fault::bad_argument,
+                    fmt::format("a face names vertex {}, but there are {} vertices: pass the faces of this mesh", v,
+                                positions.size()));
     const int sign = orientation(positions[face[0]], positions[face[1]], positions[face[2]]);
     flipped.push_back(sign < 0);
     result.flipped_faces += sign < 0;

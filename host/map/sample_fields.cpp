@@ -13,10 +13,14 @@ namespace {
 void check_faces(const SphereSamples& samples, std::span<const Face> faces, std::size_t vertices) {
   if (std::any_of(samples.faces.begin(), samples.faces.end(), [&](std::uint32_t f) { return f >= faces.size(); }))
     throw Error(Fault::bad_argument,
-                fmt::format("samples of a mesh with more than the {} faces given: they belong together", faces.size()));
+                fmt::format("the samples name faces beyond the {} given: pass the faces of the mesh that was sampled",
+                            faces.size()));
   for (const Face& face : faces)
     for (const std::uint32_t v : face)
-      if (v >= vertices) throw Error(Fault::bad_argument, fmt::format("a face names vertex {} of {}", v, vertices));
+      if (v >= vertices)
+        throw Error(
+            Fault::bad_argument,
+            fmt::format("a face names vertex {}, but there are {} vertices: pass the faces of this mesh", v, vertices));
 }
 
 // value(vertex, field) over all points; fields one after the other.
@@ -43,7 +47,7 @@ std::vector<double> sample_fields(const SphereSamples& samples, std::span<const 
                                   std::span<const double> values, std::size_t vertices) {
   if (vertices == 0 || values.size() % vertices != 0)
     throw Error(Fault::bad_argument,
-                fmt::format("{} values are no whole number of fields on {} vertices", values.size(), vertices));
+                fmt::format("{} values are not a whole number of fields on {} vertices", values.size(), vertices));
   check_faces(samples, faces, vertices);
   return interpolate(samples, faces, values.size() / vertices,
                      [&](std::uint32_t v, std::size_t f) { return values[f * vertices + v]; });

@@ -34,7 +34,7 @@ Coefficients mass_moments(const CoefficientSet& set, int lmax) {
 
 Coefficients over_radius(Coefficients moments, double radius) {
   if (!(radius > 0) || !std::isfinite(radius))
-    throw Error(Fault::bad_argument, fmt::format("a radius of {} for the moments: it must be above 0", radius));
+    throw Error(Fault::bad_argument, fmt::format("the radius of the moments is {}: it must be above 0", radius));
   if (radius == moments.reference_radius) return moments;
   const long double ratio = (long double)(moments.reference_radius) / radius;
   for (int l = 0; l <= moments.lmax; ++l) {

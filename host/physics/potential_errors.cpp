@@ -377,11 +377,12 @@ std::optional<double> good_from(ErrorSearch& search, int order, const std::vecto
 SeriesErrors series_errors(const Body& body, const std::vector<int>& orders, const std::vector<double>& distances,
                            Backend& backend, unsigned threads, Monitor& monitor) {
   if (orders.empty() || distances.empty())
-    throw Error(Fault::bad_argument, "errors of a series: at least one order and one distance are needed");
+    throw Error(Fault::bad_argument, "errors of a series need at least one order and one distance");
   for (const double d : distances)
     if (!(d >= 1) || !(d <= farthest_good))
-      throw Error(Fault::bad_argument,
-                  fmt::format("a distance of {} Brillouin radii: the series is for 1 to {}", d, farthest_good));
+      throw Error(
+          Fault::bad_argument,
+          fmt::format("a distance of {} Brillouin radii is out of range: the series is for 1 to {}", d, farthest_good));
   const int highest = *std::max_element(orders.begin(), orders.end());
   SeriesErrors result;
   result.truth_degree = std::min(largest_potential_degree, std::max(usual_truth_degree, highest));

@@ -173,7 +173,9 @@ std::string decimal_difference(const std::string& a, const std::string& b) {
     borrow = digit < 0 ? 1 : 0;
     first[i] = char('0' + digit + 10 * borrow);
   }
-  if (borrow) throw Error(Fault::bad_argument, fmt::format("{} - {} is below 0", a, b));
+  if (borrow)
+    throw Error(Fault::bad_argument,
+                fmt::format("{} - {} is below 0, and only differences of 0 or more are computed", a, b));
   std::string whole = first.substr(0, length - fraction), rest = first.substr(length - fraction);
   whole.erase(0, std::min(whole.find_first_not_of('0'), whole.size() - 1));
   rest.erase(rest.find_last_not_of('0') + 1);

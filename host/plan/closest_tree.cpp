@@ -328,7 +328,8 @@ ClosestTree::ClosestTree(std::span<const Vec3> mesh_vertices, std::span<const Fa
     : vertices(mesh_vertices.begin(), mesh_vertices.end()), faces(mesh_faces.begin(), mesh_faces.end()) {
   check_distance_surface(mesh_vertices, mesh_faces);
   if (faces.size() > (std::size_t(1) << 30))
-    throw Error(Fault::too_large, fmt::format("{} faces; distances can be measured from up to 2^30", faces.size()));
+    throw Error(Fault::too_large,
+                fmt::format("the surface has {} faces; distances can be measured from up to 2^30", faces.size()));
   low = high = vertices[faces[0][0]];
   for (const Face& face : faces)
     for (const std::uint32_t v : face) {

@@ -75,9 +75,10 @@ void check(const PotentialProblem& problem) {
                             problem.lmax, problem.moments.lmax, largest_potential_degree, most));
   if (!(problem.moments.reference_radius > 0) || !std::isfinite(problem.moments.reference_radius))
     throw Error(Fault::bad_argument,
-                fmt::format("a reference radius of {}: it must be above 0", problem.moments.reference_radius));
+                fmt::format("the reference radius is {}: it must be above 0", problem.moments.reference_radius));
   if (problem.points.size() > (std::size_t(1) << 31))
-    throw Error(Fault::too_large, fmt::format("{} points at once: pass at most 2^31", problem.points.size()));
+    throw Error(Fault::too_large,
+                fmt::format("{} points are too many at once: pass at most 2^31", problem.points.size()));
 }
 
 // Terms of one degree are at most the set's norm there times that of the harmonics.

@@ -30,7 +30,8 @@ double turn(double x) {
 
 void check_input(std::span<const Vec3> positions, std::span<const Face> faces) {
   if (faces.size() >= 0x7fffffffU)
-    throw Error(Fault::bad_argument, fmt::format("sampling {} triangles: fewer than 2^31 are possible", faces.size()));
+    throw Error(Fault::bad_argument,
+                fmt::format("{} triangles cannot be sampled: fewer than 2^31 are possible", faces.size()));
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (const std::uint32_t v : faces[f]) {
       if (v >= positions.size())

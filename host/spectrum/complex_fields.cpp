@@ -79,7 +79,7 @@ ComplexCoefficients analyse(SphereTransform& transform, const std::vector<std::c
   const std::size_t points = transform.grid().points(), count = SphereCoefficients::count(transform.lmax());
   if (values.size() % points)
     throw Error(Fault::bad_argument,
-                fmt::format("{} values are no whole number of fields on {} points", values.size(), points));
+                fmt::format("{} values are not a whole number of fields on {} points", values.size(), points));
   const int fields = int(values.size() / points);
   SphereCoefficients parts(transform.lmax(), 2 * fields);
   for (int first = 0; first < fields; first += batch) {

@@ -101,7 +101,9 @@ int sign(const CoefficientSet& set) {
 CoefficientSet converted(const CoefficientSet& set, const ConversionTarget& target) {
   const int lmax = target.lmax.value_or(set.lmax);
   if (lmax < 0 || lmax > set.lmax)
-    throw Error(Fault::bad_argument, fmt::format("degree {} of coefficients that go to degree {}", lmax, set.lmax));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("degree {} is not among coefficients that go to degree {}: ask for no higher one", lmax, set.lmax));
   CoefficientSet result = set;
   if (lmax < set.lmax) {
     result.lmax = lmax;
@@ -118,7 +120,7 @@ CoefficientSet converted(const CoefficientSet& set, const ConversionTarget& targ
                                        "only those of mass multipoles and potentials can be brought to another one");
     if (!(*target.reference_radius > 0) || !std::isfinite(*target.reference_radius))
       throw Error(Fault::bad_argument,
-                  fmt::format("a reference radius of {}; it must be above 0", *target.reference_radius));
+                  fmt::format("the reference radius is {}; it must be above 0", *target.reference_radius));
     result.reference_radius = target.reference_radius;
   }
 

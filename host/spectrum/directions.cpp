@@ -184,14 +184,17 @@ struct DirectionSynthesis::Block {
 Direction direction(double theta, double phi) {
   if (!(std::fabs(theta) <= 1e6) || !(std::fabs(phi) <= 1e6))
     throw Error(Fault::bad_argument,
-                fmt::format("a direction at theta {} and phi {}: radians up to 1e6 are possible", theta, phi));
+                fmt::format("the direction at theta {} and phi {} is out of range: radians up to 1e6 are possible",
+                            theta, phi));
   return {std::cos((long double)theta), std::sin((long double)theta), phi, 0};
 }
 
 Direction direction(const Vec3& r) {
   const long double x = r.x(), y = r.y(), z = r.z(), rho = std::hypot(x, y), length = std::hypot(rho, z);
   if (!(length > 0) || !std::isfinite(length))
-    throw Error(Fault::bad_argument, fmt::format("({}, {}, {}) points nowhere", r.x(), r.y(), r.z()));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("({}, {}, {}) is not a direction: it must have a finite length above 0", r.x(), r.y(), r.z()));
   const long double phi = std::atan2(y, x);
   return {z / length, rho / length, double(phi), double(phi - double(phi))};
 }
@@ -201,8 +204,9 @@ DirectionSynthesis::DirectionSynthesis(const SphereCoefficients& coefficients, b
       summed_(coefficients.fields * (derivatives ? 3 : 1)), derivatives_(derivatives), threads_(threads) {
   const int lmax = coefficients.lmax;
   if (lmax < 0 || lmax > largest_grid_degree || fields_ < 0)
-    throw Error(Fault::bad_argument, fmt::format("synthesis of {} fields to degree {}: degrees 0 to {} are possible",
-                                                 fields_, lmax, largest_grid_degree));
+    throw Error(Fault::bad_argument,
+                fmt::format("{} fields cannot be synthesised to degree {}: degrees 0 to {} are possible", fields_, lmax,
+                            largest_grid_degree));
   plan_ = plan::recurrence(lmax, threads);
   steps_.resize(plan_.offset.back() * 4 * std::size_t(summed_));
   const auto prepare = [&](const SphereCoefficients& a, int first) {

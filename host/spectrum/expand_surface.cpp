@@ -22,7 +22,8 @@ void check(const ExpandSurfaceOptions& options) {
     throw Error(Fault::bad_argument,
                 fmt::format("surfaces are expanded to degree 0 to {}, not {}", largest_surface_degree, options.lmax));
   if (options.grid_degree != 0 && (options.grid_degree < 2 * options.lmax || options.grid_degree > largest_grid_degree))
-    throw Error(Fault::bad_argument, fmt::format("a grid of degree {} is not what degree {} can be sampled on",
+    throw Error(Fault::bad_argument, fmt::format("a grid of degree {} cannot sample an expansion to degree {}: it must "
+                                                 "be twice that at least, and not beyond the largest grid",
                                                  options.grid_degree, options.lmax));
   if (!options.origin.allFinite()) throw Error(Fault::bad_argument, "the origin of an expansion must be finite");
 }
@@ -65,7 +66,7 @@ SphereCoefficients expand_on(const SphereGrid& grid, const SurfaceSampler& sampl
   const std::vector<double> values = sampler(grid, report);
   if (values.size() != std::size_t(fields) * grid.points())
     throw Error(Fault::bad_argument,
-                fmt::format("{} values are no six fields on {} points", values.size(), grid.points()));
+                fmt::format("{} values are not six fields on {} points", values.size(), grid.points()));
   report.sample_seconds = seconds_since(start);
   const auto sampled = Clock::now();
   SphereCoefficients coefficients(options.lmax, fields);

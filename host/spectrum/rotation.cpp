@@ -107,11 +107,12 @@ SphereCoefficients rotate(const SphereCoefficients& coefficients, const EulerAng
   const int lmax = coefficients.lmax;
   if (lmax < 0 || lmax > largest_grid_degree)
     throw Error(Fault::bad_argument,
-                fmt::format("rotation of coefficients to degree {}: 0 to {} are possible", lmax, largest_grid_degree));
+                fmt::format("coefficients to degree {} cannot be rotated: degrees 0 to {} are possible", lmax,
+                            largest_grid_degree));
   for (const double angle : {angles.alpha, angles.beta, angles.gamma})
     if (!(std::fabs(angle) <= 1e6))
       throw Error(Fault::bad_argument,
-                  fmt::format("rotation by an angle of {}: radians up to 1e6 are possible", angle));
+                  fmt::format("a rotation by an angle of {} is out of range: radians up to 1e6 are possible", angle));
 
   const Turn alpha(angles.alpha), beta(angles.beta), gamma(angles.gamma);
   const Turn quarter(1, 0), half(2, 0);
