@@ -136,8 +136,8 @@ TEST_CASE("what never happens is called so on the screen, and no unit follows wh
     return run.out;
   };
   CHECK_THAT(screen(with(crate, {"--punch", "20N", "--push", "20N:1s", "--friction", "0.05"})),
-             Contains("must last                              never") &&
-                 Contains("lifts off after                        never\n") && Contains("`grips` says") &&
+             Contains("least duration of the punch            never") &&
+                 Contains("time until it lifts off                never\n") && Contains("`grips` says") &&
                  Contains("feet held"));
   CHECK_THAT(screen({"builtin:box:1,2,0.8"}), Contains("not known\n"));
 }

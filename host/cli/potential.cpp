@@ -180,7 +180,7 @@ const char* force_name(const Units& units) {
 
 void add_one_point(const Solved& s, Findings& found) {
   const PotentialField& f = s.field;
-  found.rows.push_back({"at", "at", s.places.points[0], s.units.length});
+  found.rows.push_back({"at", "place", s.places.points[0], s.units.length});
   found.rows.push_back({"potential", "potential", f.value[0], s.units.potential});
   if (!f.gradient.empty())
     found.rows.push_back({force_name(s.units), force_name(s.units), f.gradient[0], s.units.force});
@@ -191,7 +191,7 @@ void add_one_point(const Solved& s, Findings& found) {
     found.rows.push_back({"gradient", fmt::format("gradient of the {}", force_name(s.units)), tensor, s.units.tensor});
   }
   if (!s.density.empty())
-    found.rows.push_back({"density", "density there", s.density[0],
+    found.rows.push_back({"density", "density at the place", s.density[0],
                           s.units.length == "m" ? (s.units.law.charge ? "C/m^3" : "kg/m^3") : "of the body"});
 }
 
@@ -338,10 +338,10 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
                  s.units.length, "not known: the file does not say it"},
                 {"places", "places", s.places.name},
                 {"point_count", "points", double(s.places.points.size())},
-                {"exact_count", "of them by the polyhedron", double(s.exact_points)}};
+                {"exact_count", "points by the polyhedron's closed form", double(s.exact_points)}};
   if (s.exact_points + s.far_points > 0) {
-    found.rows.push_back({"far_count", "by its series, which is nearer there", double(s.far_points)});
-    found.rows.push_back({"exact_error", "estimated relative error of both",
+    found.rows.push_back({"far_count", "points by the polyhedron's series", double(s.far_points)});
+    found.rows.push_back({"exact_error", "estimated relative error at these",
                           std::isfinite(s.exact_error) ? Value(s.exact_error) : Value(), "",
                           "none: the potential is 0"});
   }

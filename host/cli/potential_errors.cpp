@@ -33,9 +33,9 @@ std::vector<double> parse_distances(const std::string& text) {
 
 void add_errors(const SeriesErrors& errors, Findings& found) {
   found.rows.push_back({"directions", "directions of root mean squares", double(errors.directions)});
-  found.rows.push_back({"truth_from", "from there on the truth is the series", errors.truth_from, "radii"});
-  found.rows.push_back({"truth_degree", "to degree", double(errors.truth_degree)});
-  found.rows.push_back({"truth_error", "which is there off the polyhedron by", errors.truth_error});
+  found.rows.push_back({"truth_from", "distance from which a series is truth", errors.truth_from, "radii"});
+  found.rows.push_back({"truth_degree", "degree of that series", double(errors.truth_degree)});
+  found.rows.push_back({"truth_error", "error of that series at that distance", errors.truth_error});
   Table table{
       "errors",
       "relative errors of the series, by distance in Brillouin radii and order",

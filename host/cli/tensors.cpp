@@ -70,7 +70,7 @@ Findings solve(const PhysicsOptions& options, bool inertia_wanted) {
                         "the third is the first cross the second");
   found.rows = {
       {"origin", "origin", tensors.origin ? Value(*tensors.origin) : Value(), length},
-      {"origin_kind", "which is", tensors.origin_kind},
+      {"origin_kind", "kind of origin", tensors.origin_kind},
       {"mass", "mass", tensors.mass, mass},
       {"first_moment", "first moment", tensors.first_moment, si ? "kg m" : "density * length^4"},
       {"quadrupole", "quadrupole, integral of density (3 x_i x_j - r^2 delta_ij)", tensors.quadrupole, unit},
@@ -79,7 +79,7 @@ Findings solve(const PhysicsOptions& options, bool inertia_wanted) {
       {"second_moment", "second moment, integral of density x_i x_j",
        complete ? Value(tensors.second_moment()) : Value(), unit},
       {"principal_moments", "principal moments of inertia", complete ? Value(*principal.moments) : Value(), unit},
-      {"principal_quadrupole", "quadrupole along these axes", principal.quadrupole, unit},
+      {"principal_quadrupole", "quadrupole along the principal axes", principal.quadrupole, unit},
       {"principal_axes", "principal axes, one a row", Eigen::Matrix3d(principal.axes.transpose())}};
   if (options.paper()) found.paper = beside_paper(tensors, placed);
   return found;

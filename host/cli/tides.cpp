@@ -108,7 +108,7 @@ void add_locking(const Tides& t, const Options& options, Findings& found) {
     throw Error(Fault::bad_argument, "the time to lock needs all of --love, --quality and --spin");
   const double time = locking_time(t.body, t.orbit, spin, *options.love, *options.quality);
   found.rows.push_back({"locking_time_s", "time to lock by tides", time, "s"});
-  found.rows.push_back({"locking_time_yr", "the same", time / julian_year, "yr"});
+  found.rows.push_back({"locking_time_yr", "time to lock by tides, in years", time / julian_year, "yr"});
   found.notes.push_back(
       "time to lock: omega r^6 I Q/(3 G M^2 k2 R^5), Gladman et al. 1996, with I and R of the uniform ball "
       "of the body's mass and second moment");
@@ -124,10 +124,10 @@ void add_attitude(const Tides& t, const Options& options, Findings& found) {
   const auto vector = [](const LongVec3& v) { return Value(Vec3(v.cast<double>())); };
   found.rows.push_back({"attitude", "attitude, body's axes to the orbit's", Eigen::Matrix3d(attitude.cast<double>())});
   found.rows.push_back({"torque", "gravity's torque (out, along, normal)", vector(all.gravity), "N m"});
-  found.rows.push_back({"torque_quadrupole", "of degree 2", vector(second.gravity), "N m"});
-  found.rows.push_back({"torque_higher", fmt::format("of degrees 3 to {}", t.body.order),
+  found.rows.push_back({"torque_quadrupole", "torque of degree 2", vector(second.gravity), "N m"});
+  found.rows.push_back({"torque_higher", fmt::format("torque of degrees 3 to {}", t.body.order),
                         vector(LongVec3(all.gravity - second.gravity)), "N m"});
-  found.rows.push_back({"torque_at_rest", "less what keeps it with the orbit", vector(all.rest), "N m"});
+  found.rows.push_back({"torque_at_rest", "torque left in the orbit's frame", vector(all.rest), "N m"});
 }
 
 Tides read_tides(const PhysicsInput& input, const PhysicsOptions& common, const Options& options, Findings& found) {
@@ -165,26 +165,28 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
         "than another and nothing librates or locks");
   else if (t.principal.first_two_alike || t.principal.last_two_alike)
     found.notes.push_back("two moments of inertia are alike: about the axis of symmetry the body turns freely");
-  found.rows = {
-      {"mass_kg", "mass", t.body.mass, "kg"},
-      {"centre", "in orbit about", t.centre.name.empty() ? Value(std::string("a point mass")) : Value(t.centre.name)},
-      {"centre_mass_kg", "its mass", t.centre.mass(), "kg"},
-      {"radius_m", "radius of the orbit", t.orbit.radius, "m"},
-      {"order", "highest degree", double(t.body.order)},
-      {"rate_rad_per_s", "orbital rate n", t.orbit.rate, "rad/s"},
-      {"period_s", "orbital period", 2 * std::numbers::pi / t.orbit.rate, "s"},
-      {"principal_moments", "moments of inertia A, B, C", *t.principal.moments, "kg m^2"},
-      {"principal_axes", "their axes, one a row", Eigen::Matrix3d(t.principal.axes.transpose())}};
+  found.rows = {{"mass_kg", "mass", t.body.mass, "kg"},
+                {"centre", "centre of the orbit",
+                 t.centre.name.empty() ? Value(std::string("a point mass")) : Value(t.centre.name)},
+                {"centre_mass_kg", "mass of the centre", t.centre.mass(), "kg"},
+                {"radius_m", "radius of the orbit", t.orbit.radius, "m"},
+                {"order", "highest degree", double(t.body.order)},
+                {"rate_rad_per_s", "orbital rate n", t.orbit.rate, "rad/s"},
+                {"period_s", "orbital period", 2 * std::numbers::pi / t.orbit.rate, "s"},
+                {"principal_moments", "moments of inertia A, B, C", *t.principal.moments, "kg m^2"},
+                {"principal_axes", "principal axes, one a row", Eigen::Matrix3d(t.principal.axes.transpose())}};
   add_attitude(t, options, found);
+  found.rows.push_back({"largest_torque", "largest torque, 3 GM (C - A)/(2 r^3)",
+                        largest_quadrupole_torque(t.principal, t.orbit), "N m"});
+  found.rows.push_back({"librates", "body librates", !isotropic});
+  found.rows.push_back({"pitch_period_s", "libration period, pitch", librates(stable.pitch), "s"});
   found.rows.push_back(
-      {"largest_torque", "3 GM (C - A)/(2 r^3), its largest", largest_quadrupole_torque(t.principal, t.orbit), "N m"});
-  found.rows.push_back({"librates", "librates", !isotropic});
-  found.rows.push_back({"pitch_period_s", "libration (A out, C normal): pitch", librates(stable.pitch), "s"});
-  found.rows.push_back({"roll_yaw_slow_period_s", "roll and yaw, slow", librates(stable.roll_yaw[0]), "s"});
-  found.rows.push_back({"roll_yaw_fast_period_s", "roll and yaw, fast", librates(stable.roll_yaw[1]), "s"});
+      {"roll_yaw_slow_period_s", "libration period, roll and yaw, slow", librates(stable.roll_yaw[0]), "s"});
+  found.rows.push_back(
+      {"roll_yaw_fast_period_s", "libration period, roll and yaw, fast", librates(stable.roll_yaw[1]), "s"});
   const double half = isotropic ? 0 : capture_half_width(t.principal, t.orbit);
-  found.rows.push_back({"capture_half_width_rad_per_s", "spins caught: n, give or take", half, "rad/s"});
-  found.rows.push_back({"capture_fraction", "the same, of n", half / t.orbit.rate});
+  found.rows.push_back({"capture_half_width_rad_per_s", "largest |spin - n| caught", half, "rad/s"});
+  found.rows.push_back({"capture_fraction", "largest |spin - n| caught, over n", half / t.orbit.rate});
   add_locking(t, options, found);
   if (isotropic) return found;
   found.tables.push_back(equilibria_table(t));

@@ -187,8 +187,8 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
   const Weight weight{stance.body.mass * options.gravity, input.metric};
   found.rows = {
       {"body", "body", input.full_is},
-      {"attitude", "stands", std::string(options.as_modelled ? "as modelled" : "settled")},
-      {"settle_angle_deg", "turned to settle by", stance.attitude.angle * degrees, "degrees"},
+      {"attitude", "attitude", std::string(options.as_modelled ? "as modelled" : "settled")},
+      {"settle_angle_deg", "angle turned to settle", stance.attitude.angle * degrees, "degrees"},
       {"settle_rolls", "rolls until it rests", double(stance.attitude.rolls.size())},
       {"support_points", "vertices that touch the ground", double(stance.contact.support.size())},
       {"over_patch", "barycentre over the contact patch", !stance.held},
@@ -196,25 +196,25 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
       {"gravity", "gravity", options.gravity, "m/s^2"},
       {"weight_N", "weight", weight.of(1), "N"},
       {"barycentre", "barycentre", stance.body.barycentre, length},
-      {"side", "falls to the", name(t.side)},
+      {"side", "side that it falls to", name(t.side)},
       {"pivot", "pivot", t.pivot, length},
-      {"point", "pushed at", t.point, length},
-      {"direction", "pushed towards", t.direction},
+      {"point", "point of the push", t.point, length},
+      {"direction", "direction of the push", t.direction},
       {"force_N", "force to begin, about the pivot", weight.of(t.force), "N"},
-      {"force_over_weight", "the same over the weight", t.force},
-      {"force_over_weight_paper_balance", "the paper's balance over the weight", t.force_paper_balance},
-      {"force_N_paper_balance", "about the barycentre, as the paper has it", weight.of(t.force_paper_balance), "N"},
-      {"force_N_paper_literal", "the same with its arm in space", weight.of(t.force_paper_literal), "N",
+      {"force_over_weight", "force to begin over the weight", t.force},
+      {"force_over_weight_paper_balance", "paper's balance: force over the weight", t.force_paper_balance},
+      {"force_N_paper_balance", "paper's balance, about the barycentre", weight.of(t.force_paper_balance), "N"},
+      {"force_N_paper_literal", "paper's balance, its arm in space", weight.of(t.force_paper_literal), "N",
        input.metric ? "none: its ray meets no surface" : "not known"},
       {"force_left_N", "force to begin, to the left", weight.of(stood.left.force), "N"},
-      {"force_right_N", "to the right", weight.of(stood.right.force), "N"},
+      {"force_right_N", "force to begin, to the right", weight.of(stood.right.force), "N"},
       {"friction_needed", "friction coefficient not to slip", t.friction_needed},
   };
   if (options.friction < 0) return;
   const double slip = t.slip_force(options.friction);
   found.rows.push_back({"friction", "friction coefficient", options.friction});
   found.rows.push_back({"slip_force_N", "force that makes it slip", weight.of(slip), "N"});
-  found.rows.push_back({"slip_force_over_weight", "the same over the weight", slip});
+  found.rows.push_back({"slip_force_over_weight", "slip force over the weight", slip});
   found.rows.push_back({"slips_before_tipping", "slips before it tips", options.friction < t.friction_needed});
 }
 

@@ -116,14 +116,14 @@ void add_profile(const Rocker& rocker, const PushOptions& options, const Profile
   const bool lifted = result.outcome != Outcome::never_lifted;
   const std::vector<Finding> rows = {
       {"push", "push", options.push},
-      {"push_impulse_Ns", "its impulse", profile.impulse(), "N s"},
-      {"push_outcome", "the body", name(result.outcome)},
-      {"push_tips", "tips over", result.outcome == Outcome::tipped},
-      {"push_peak_tilt_deg", "largest tilt", result.peak_tilt * degrees, "degrees"},
-      {"push_lift_time_s", "lifts off after", lifted ? Value(result.lift_time) : Value(), "s", "never"},
-      {"push_end_time_s", "past the balance, or landed, after", lifted ? finite(result.end_time) : Value(), "s",
+      {"push_impulse_Ns", "impulse of the push", profile.impulse(), "N s"},
+      {"push_outcome", "outcome of the push", name(result.outcome)},
+      {"push_tips", "push tips it over", result.outcome == Outcome::tipped},
+      {"push_peak_tilt_deg", "largest tilt under the push", result.peak_tilt * degrees, "degrees"},
+      {"push_lift_time_s", "time until it lifts off", lifted ? Value(result.lift_time) : Value(), "s", "never"},
+      {"push_end_time_s", "time until past the balance, or landed", lifted ? finite(result.end_time) : Value(), "s",
        lifted ? "not known" : "never"},
-      {"push_friction_needed", "friction coefficient that takes", finite(result.friction_needed), "",
+      {"push_friction_needed", "friction coefficient for the push", finite(result.friction_needed), "",
        "none is enough: the feet leave the ground"},
   };
   found.rows.insert(found.rows.end(), rows.begin(), rows.end());
@@ -134,7 +134,7 @@ void add_profile(const Rocker& rocker, const PushOptions& options, const Profile
                     result.friction_time));
   if (!friction) return;
   const bool slips = result.friction_needed > *friction;
-  found.rows.push_back({"push_slips", "its feet slip", slips});
+  found.rows.push_back({"push_slips", "feet slip under the push", slips});
   if (slips)
     found.notes.push_back(fmt::format("the feet slip during the push (first or most at {:.4g} s): the tilt is that of "
                                       "feet that are held",
@@ -196,24 +196,24 @@ void add_push_findings(const Rocker& rocker, const PushOptions& options, const P
   const std::vector<Finding> rows = {
       {"push_direction", "direction of a push that lasts",
        std::string(plan.turns_with_body ? "turns with the body" : "stays in space")},
-      {"balance_angle_deg", "falls by itself from a tilt of", rocker.balance * degrees, "degrees"},
+      {"balance_angle_deg", "tilt from which it falls by itself", rocker.balance * degrees, "degrees"},
       {"inertia_about_pivot", "moment of inertia about the pivot edge", rocker.inertia, "kg m^2"},
       {"least_energy_J", "energy that tips it", rocker.least_energy(), "J"},
       {"least_impulse_Ns", "smallest impulse, of a short push", impulse, "N s"},
       {"sustained_N", "sustained force", plan.sustained, "N"},
-      {"sustained_tips", "tips it in the end", plan.sustained > rocker.threshold()},
-      {"sustained_short_by", "force to begin over that", rocker.threshold() / plan.sustained},
+      {"sustained_tips", "sustained force tips it", plan.sustained > rocker.threshold()},
+      {"sustained_short_by", "force to begin over sustained force", rocker.threshold() / plan.sustained},
       {"punch_N", "punch", plan.punch, "N"},
-      {"punch_least_duration_s", "must last", finite(duration), "s",
+      {"punch_least_duration_s", "least duration of the punch", finite(duration), "s",
        "never: it does not tip it, however long it lasts"},
-      {"punch_impulse_Ns", "which is", finite(duration * plan.punch), "N s", "none is enough"},
+      {"punch_impulse_Ns", "impulse of that punch", finite(duration * plan.punch), "N s", "none is enough"},
   };
   found.rows.insert(found.rows.end(), rows.begin(), rows.end());
   if (plan.punch_duration) {
     const double needed = rocker.least_force(*plan.punch_duration, monitor);
-    found.rows.push_back({"punch_duration_s", "the punch lasts", *plan.punch_duration, "s"});
-    found.rows.push_back({"punch_tips", "and tips it", duration <= *plan.punch_duration});
-    found.rows.push_back({"punch_force_needed_N", "force that does in that time", needed, "N"});
+    found.rows.push_back({"punch_duration_s", "duration of the punch", *plan.punch_duration, "s"});
+    found.rows.push_back({"punch_tips", "punch of that duration tips it", duration <= *plan.punch_duration});
+    found.rows.push_back({"punch_force_needed_N", "force that tips it in that duration", needed, "N"});
   }
   if (plan.profile) add_profile(rocker, options, *plan.profile, friction, monitor, found);
   found.tables.push_back(boundary(rocker, options, plan, friction, monitor));
