@@ -294,9 +294,9 @@ TEST_CASE("inspect names faces that intersect and says how much is overlapped", 
   const ProgramRun run = run_program({"inspect", corpus + "overlapping-shells.off"});
   CHECK_THAT(run.out, Contains("14 pairs of faces cross, 0 overlap, 0 touch") && Contains("crossing: face ") &&
                           Contains("13.33 % of the volume") &&
-                          Contains("inscribed radius         1.11803398874989 about it"));
+                          Contains("inscribed radius         1.11803398874989 about the centre of mass"));
   const ProgramRun turned = run_program({"inspect", corpus + "self-intersecting.off"});
-  CHECK_THAT(turned.out, Contains("inside out               0.0277778"));
+  CHECK_THAT(turned.out, Contains("volume inside out        0.0277778"));
   const ProgramRun open = run_program({"inspect", std::string(COWGPU_CORPUS) + "/refused/mesh-open--fin.off"});
   CHECK_THAT(open.out, Contains("self-intersections") && !Contains("overlapped volume"));
   CHECK(run_program({"inspect", std::string(COWGPU_CORPUS) + "/refused/mesh-not-finite--nan.off"}).exit_code == 0);

@@ -169,7 +169,7 @@ void write_inspection_text(const Inspection& found) {
   row("fit for moments", found.moments);
   row("fit for sphere maps", found.maps);
   row("vertices, edges, faces", fmt::format("{}, {}, {}", a.vertices, a.edges, a.faces));
-  row("finite", yes(a.finite));
+  row("coordinates finite", yes(a.finite));
   row("closed", a.closed ? "yes" : fmt::format("no: {} open edges", a.open_edges));
   row("oriented", a.consistently_oriented ? "yes" : fmt::format("no: {} unbalanced edges", a.unbalanced_edges));
   row("edge-manifold", a.edge_manifold ? "yes" : fmt::format("no: {} edges with more than two faces", a.crowded_edges));
@@ -198,13 +198,14 @@ void write_inspection_text(const Inspection& found) {
   if (a.volume) row("volume", fmt::format("{:.15g}", *a.volume));
   if (found.overlap) {
     row("overlapped volume", text_of(found.overlap->overlapped, *a.volume));
-    row("inside out", text_of(found.overlap->inverted, *a.volume));
+    row("volume inside out", text_of(found.overlap->inverted, *a.volume));
   }
   if (a.centre_of_mass) row("centre of mass", point(*a.centre_of_mass));
   if (found.brillouin_radius) {
-    row("Brillouin radius", fmt::format("{:.15g} about it", *found.brillouin_radius));
-    row("inscribed radius", found.inscribed_radius ? fmt::format("{:.15g} about it", *found.inscribed_radius)
-                                                   : "none: it lies outside the body");
+    row("Brillouin radius", fmt::format("{:.15g} about the centre of mass", *found.brillouin_radius));
+    row("inscribed radius", found.inscribed_radius
+                                ? fmt::format("{:.15g} about the centre of mass", *found.inscribed_radius)
+                                : "none: the centre of mass lies outside the body");
   }
   if (const auto& ball = found.largest_ball)
     row("largest ball inside",
