@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # scripts/record.sh PROGRAM FOLDER: what every command gives, recorded, so that two builds can be compared.
-# Runs PROGRAM almost two hundred times, all subcommands among them, on small bodies that are built in and on small files that it
-# writes itself. Each command gets a folder FOLDER/NNN-NAME with `command`, `exit_code`, `stdout`, `stderr` and the files that
-# the command wrote. scripts/record_compare.py compares two such folders. FOLDER must be new or empty.
+# Runs PROGRAM almost two hundred times, all subcommands among them, on small bodies that are built in and on small files
+# that it writes itself. Each command gets a folder FOLDER/NNN-NAME with `command`, `exit_code`, `stdout`, `stderr` and the
+# files that the command wrote. scripts/record_compare.py compares two such folders. FOLDER must be new or empty.
 #
 # Every command runs in its own folder, under the name `cowgpu`, and names its inputs by relative paths, so that results
 # which tell their command are the same wherever the program and FOLDER are. Most commands run on the CPU path; those of
 # $vulkan on Mesa's software device, and where it is missing their refusals are what is recorded. So it is with the mesh
-# `benchmark` and the page of reports.
+# `benchmark`, whose folder COWGPU_MESHES may name: two records that are to be compared need the same. Reports get a page
+# without a script, so that their data are recorded and the bundled page is not needed.
 set -euo pipefail
 
 if (($# != 2)); then
@@ -25,8 +26,8 @@ if [[ -n $(ls -A -- "$folder") ]]; then
   echo "record.sh: $2 is not empty, and old results would stand among the new; name another folder" >&2
   exit 2
 fi
-export LC_ALL=C TZ=UTC
-unset COWGPU_PAGE COLUMNS
+export LC_ALL=C TZ=UTC COWGPU_PAGE=$folder/inputs/page
+unset COLUMNS
 
 longest=300 # seconds that a command may take before it is ended, with exit code 124
 count=0
@@ -62,7 +63,7 @@ of() { printf '../%s' "${place[$1]:?no command is called $1 yet}"; }
 # --- Files that commands read -----------------------------------------------------------------------------------------
 
 files=$folder/inputs
-mkdir -- "$files"
+mkdir -p -- "$COWGPU_PAGE"
 in=../inputs
 
 # write FILE: a file of $files from standard input.
@@ -244,6 +245,11 @@ l,m,C,S
 2,2,0.75,0.0625
 END
 
+write page/report.html <<'END'
+<!DOCTYPE html>
+<title><!--cowgpu:title--></title>
+<script type="application/json">{"cowgpu":"data"}</script>
+END
 write two.csv <<'END'
 # normalisation orthonormal
 # phase cs
@@ -409,7 +415,8 @@ record drop drop builtin:cow@1 "${units[@]}" --height 10m --attitude upside-down
 record drop-json drop builtin:cow@1 "${units[@]}" --height 10m --attitude on-side --spin x,10rpm --order 2 --json
 record tip tip builtin:cow@1 "${units[@]}" --friction 0.6 --push 5000N:0.1s --punch 5000N --punch-duration 20ms "${cpu[@]}"
 record tip-orders tip builtin:cow@1 "${units[@]}" --order 0,2,full --lmax 8 --resolution 16 --json "${cpu[@]}"
-record tip-push tip $in/cube.off "${units[@]}" --axes x,z,-y --push $in/push.csv --side left --plot p.svg --as-modelled "${cpu[@]}"
+record tip-push tip $in/cube.off "${units[@]}" --axes x,z,-y --push $in/push.csv --side left --plot p.svg --as-modelled \
+  "${cpu[@]}"
 record tip-weight tip builtin:box:1,2,3 "${cpu[@]}"
 record tip-paper tip --recipe paper --plot boundary.png --json "${cpu[@]}"
 record errata errata

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """scripts/record_compare.py FOLDER_A FOLDER_B: whether two records of scripts/record.sh are the same.
 
-Files whose bytes are equal are equal. Others are read as JSON, as text (CSV too) or as bytes, by what they hold, and compared
-once what differs from run to run (the lists below) is left out. A file or a key that only one side has is a difference.
+Files whose bytes are equal are equal. Others are read as JSON, as text (CSV too) or as bytes, by what they hold (the data in
+a page and the head of a GLB file as JSON), and compared once what differs from run to run (the lists below) is left out. A
+file or a key that only one side has is a difference.
 
 Prints a line for each difference (command, file, place, both values), and for each file with different numbers the largest
 difference in units in the last place. These are units of the largest number around it, because small numbers beside large
@@ -54,6 +55,7 @@ LEFT_OUT_OF_TEXT = [
     (r"^(\[\d+/\d+\] .*: )[\d.]+ s$", "the time of a stage of reproduce"),
     (r"^(\d+ figures, )[\d.]+ s$", "the time of reproduce"),
     (r"(; )[\d.]+ s of stages", "the time of reproduce"),
+    (r"^(\| [^|]+ \| )[\d.]+( \| \d+ \| `cowgpu )", "the time of a stage in reproduce.md"),
     (r"^(  (?:set-up|synthesis|analysis) +)[\d.]+ s", "times of a round trip"),
     (r"(peak of the process )\d+ MiB", "measured: memory of the process"),
     (r"( multiply-add peak )[\d.]+", "measured: the machine's speed"),
@@ -85,7 +87,7 @@ TEXT_PATTERNS = [pattern(p, re.M) for p, _ in LEFT_OUT_OF_TEXT]
 
 def without(text, patterns):
     for p in patterns:
-        text = p.sub(lambda m: (m.group(1) if m.re.groups else "") + "~", text)
+        text = p.sub(lambda m: (m.group(1) if m.re.groups else "") + "~" + (m.group(2) if m.re.groups > 1 else ""), text)
     return text
 
 
@@ -260,6 +262,12 @@ def split_glb(data):
     return data[20 : 20 + length].decode("utf-8", "replace"), data[20 + length :]
 
 
+def split_page(text):
+    """The JSON between script tags of a page, each part by itself, and the page without them."""
+    tag = re.compile(r'(<script[^>]*type="application/json"[^>]*>)(.*?)(</script>)', re.S)
+    return [as_json(part) for _, part, _ in tag.findall(text)], tag.sub(r"\1\3", text)
+
+
 def compare_files(a, b):
     out = Differences()
     if a == b:
@@ -282,6 +290,12 @@ def compare_files(a, b):
     except ValueError:
         compare_bytes(a, b, out)
         return out
+    if "<script" in text_a and "<script" in text_b:
+        (data_a, rest_a), (data_b, rest_b) = split_page(text_a), split_page(text_b)
+        if len(data_a) == len(data_b) and None not in data_a + data_b:
+            text_a, text_b = rest_a, rest_b
+            for i, (x, y) in enumerate(zip(data_a, data_b)):
+                compare_json(x, y, f"data {i + 1} ", out)
     compare_text(text_a, text_b, out)
     return out
 
