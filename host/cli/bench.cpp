@@ -118,7 +118,9 @@ void add_bench(CLI::App& app, Common& common) {
       ->allow_extra_args(false)
       ->check(in_range(0, largest_degree))
       ->capture_default_str();
-  command->add_option("--cut-off", options->cut_off, "As in expand")->check(in_range(0.0, 1e-3))->capture_default_str();
+  command->add_option("--cut-off", options->cut_off, "Cut-off, as in expand")
+      ->check(in_range(0.0, 1e-3))
+      ->capture_default_str();
   command->add_option("--runs", options->runs, "Timed runs of each")->check(in_range(1, 1000))->capture_default_str();
   command->add_flag("--json", options->json, "As JSON");
   add_common_options(*command, common);

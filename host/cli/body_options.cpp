@@ -112,7 +112,7 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
       ->check(not_empty());
   command
       .add_option("--length", options.length,
-                  "Instead of that: how long the body of MESH is, along the longest side of its box: 2.5m")
+                  "How long the body of MESH is, along the longest side of its box: 2.5m; instead of --length-unit")
       ->type_name("LENGTH")
       ->check(not_empty());
   command
@@ -122,7 +122,8 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
       ->check(not_empty());
   command
       .add_option("--rotate", options.rotate,
-                  "Then turn the body: R_z(ALPHA) R_y(BETA) R_z(GAMMA), degrees, about fixed axes, the rightmost first")
+                  "Turn the body, after --axes: R_z(ALPHA) R_y(BETA) R_z(GAMMA), degrees, about fixed axes, the "
+                  "rightmost first")
       ->type_name("ALPHA,BETA,GAMMA")
       ->check(not_empty());
   command

@@ -95,7 +95,7 @@ std::optional<Vec3> parse_point(std::string_view text);
 /// Reads --origin: com, mesh or X,Y,Z. Throws Error(bad_argument).
 OriginChoice parse_origin(const std::string& text);
 
-/// Adds --normalisation and --phase with their words; the texts say of what.
+/// Adds --normalisation and --phase with their words; `of_what` goes on behind their names in the help: "of OUT".
 void add_convention_options(CLI::App& command, std::string& normalisation, std::string& phase, const char* of_what);
 
 /// "orthonormal, with Condon-Shortley phase".

@@ -116,10 +116,12 @@ OriginChoice parse_origin(const std::string& text) {
 
 void add_convention_options(CLI::App& command, std::string& normalisation, std::string& phase, const char* of_what) {
   command
-      .add_option("--normalisation", normalisation,
-                  fmt::format("{}: orthonormal, 4pi (geodesy), schmidt, unnormalised (to about degree 150)", of_what))
+      .add_option(
+          "--normalisation", normalisation,
+          fmt::format("Normalisation {}: orthonormal, 4pi (geodesy), schmidt, unnormalised (to about degree 150)",
+                      of_what))
       ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
-  command.add_option("--phase", phase, fmt::format("{}: cs (Condon-Shortley) or none", of_what))
+  command.add_option("--phase", phase, fmt::format("Phase {}: cs (Condon-Shortley) or none", of_what))
       ->check(CLI::IsMember({"cs", "none"}));
 }
 

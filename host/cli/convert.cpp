@@ -151,24 +151,28 @@ void add_convert(CLI::App& app, Common& common) {
           "them), ICGEM's .gfc, SHTOOLS text, gravity tables (SHADR: .tab, .sha, .txt ...)")
       ->required();
   command->add_option("OUT", options->output, "FILE.json, .csv, .nc, .gfc or .sh")->required();
-  command->add_option("--of", options->of, "Of a result of `expand`: mass (default), harmonic, stretch, smooth or flow")
+  command
+      ->add_option("--of", options->of,
+                   "Expansion to take from a result of `expand`: mass (default), harmonic, stretch, smooth or flow")
       ->type_name("NAME");
-  command->add_option("--field", options->field, "Of several fields the one of this name, such as f_r")
+  command->add_option("--field", options->field, "Name of the field to take, where there are several, such as f_r")
       ->type_name("NAME");
-  add_convention_options(*command, options->normalisation, options->phase, "Of OUT (default: of IN)");
-  command->add_option("--form", options->form, "Of OUT: real (C, S) or complex (re, im; .json and .csv)")
+  add_convention_options(*command, options->normalisation, options->phase, "of OUT (default: that of IN)");
+  command->add_option("--form", options->form, "Form of OUT: real (C, S) or complex (re, im; .json and .csv)")
       ->check(CLI::IsMember({"real", "complex"}));
   command
       ->add_option("--kind", options->kind,
-                   "Of a body: multipoles (Q_lm / R^l) or potential (C_lm of geodesy; what .gfc and .sh hold)")
+                   "Kind of OUT, where IN is of a body: multipoles (Q_lm / R^l) or potential (C_lm of geodesy; what "
+                   ".gfc and .sh hold)")
       ->check(CLI::IsMember({"multipoles", "potential"}));
-  command->add_option("--reference-radius", options->reference_radius, "Of OUT, in the length unit of IN")
+  command
+      ->add_option("--reference-radius", options->reference_radius, "Reference radius of OUT, in the length unit of IN")
       ->type_name("R")
       ->check(not_empty());
   command
       ->add_option("--brillouin-radius", options->brillouin_radius,
-                   "Of IN, where it does not say it: the radius of the sphere about its origin that holds the body, in "
-                   "its length unit")
+                   "Radius of the sphere about the origin of IN that holds the body, in the length unit of IN, where "
+                   "IN does not say it")
       ->type_name("R")
       ->check(not_empty());
   command
@@ -177,17 +181,20 @@ void add_convert(CLI::App& app, Common& common) {
                    "first")
       ->type_name("ALPHA,BETA,GAMMA")
       ->check(not_empty());
-  command->add_option("--angle-unit", options->angle_unit, "Of --rotate: degrees or radians")
+  command->add_option("--angle-unit", options->angle_unit, "Unit of the angles of --rotate: degrees or radians")
       ->check(CLI::IsMember({"degrees", "radians"}))
       ->capture_default_str();
-  add_degree_option(*command, options->lmax.emplace(-1), "Leave out the degrees above");
+  add_degree_option(*command, options->lmax.emplace(-1), "Leave out the degrees above L");
   command
-      ->add_option("--input-normalisation", options->input_normalisation, "Of IN, where a table does not say it (4pi)")
+      ->add_option("--input-normalisation", options->input_normalisation,
+                   "Normalisation of IN, where a table does not say it (default: 4pi)")
       ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
-  command->add_option("--input-phase", options->input_phase, "The same (none)")->check(CLI::IsMember({"cs", "none"}));
+  command
+      ->add_option("--input-phase", options->input_phase, "Phase of IN, where a table does not say it (default: none)")
+      ->check(CLI::IsMember({"cs", "none"}));
   command->add_flag("--si", options->si,
                     "Lengths of IN are metres and its density is in kg/m^3: GM = 6.6743e-11 m^3/(kg s^2) M");
-  add_length_unit_option(*command, options->length_unit, "Of IN");
+  add_length_unit_option(*command, options->length_unit, "IN");
   command->get_option("--si")->excludes("--length-unit");
   add_run_options(*command, common);
   command->footer(

@@ -136,11 +136,14 @@ void add_diff(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand("diff", "Two files of coefficients, degree by degree");
   command->add_option("A", options->first, "Coefficients of any format that `convert` reads, told by their content")
       ->required();
-  command->add_option("B", options->second, "Others, of any format and convention")->required();
-  command->add_option("--of", options->of, "Of results of `expand`: mass (default), harmonic, stretch, smooth or flow")
+  command->add_option("B", options->second, "Coefficients to compare, of any format and convention")->required();
+  command
+      ->add_option("--of", options->of,
+                   "Expansion to take from results of `expand`: mass (default), harmonic, stretch, smooth or flow")
       ->type_name("NAME");
-  command->add_option("--field", options->field, "Of several fields the one of this name")->type_name("NAME");
-  add_convention_options(*command, options->normalisation, options->phase, "Of the norms");
+  command->add_option("--field", options->field, "Name of the field to take, where there are several")
+      ->type_name("NAME");
+  add_convention_options(*command, options->normalisation, options->phase, "of the norms");
   for (const char* option : {"--normalisation", "--phase"}) command->get_option(option)->capture_default_str();
   command
       ->add_option("--tolerance", options->tolerance,
@@ -148,7 +151,7 @@ void add_diff(CLI::App& app, Common& common) {
                    "neighbours on each side")
       ->check(non_negative_number())
       ->type_name("T");
-  add_length_unit_option(*command, options->length_unit, "Of A and B");
+  add_length_unit_option(*command, options->length_unit, "A and B");
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.diff.v1.json)");
   command->footer("B is brought to the kind and reference radius of A. Exit code 0, or 1 beyond --tolerance.\n"
                   "Example: cowgpu diff cow.json cow.gfc --tolerance 1e-15");

@@ -170,7 +170,7 @@ Findings solve(const PhysicsOptions& common, const Options& options, ProgressSty
 
 Solve add_drop(CLI::App& command, Common& program) {
   const auto options = std::make_shared<Options>();
-  command.add_option("--height", options->height, "Of the centre of mass above the ground, with its unit: 10m")
+  command.add_option("--height", options->height, "Height of the centre of mass above the ground, with its unit: 10m")
       ->type_name("LENGTH")
       ->required();
   command

@@ -261,10 +261,9 @@ void add_expand(CLI::App& app, Common& common) {
           "the distance's flow; or all")
       ->capture_default_str();
   command
-      ->add_option(
-          "--recipe", options->recipe,
-          "Of the harmonic map and the flow: default, or paper (as Higher multipoles of the cow has them, about the "
-          "mesh's origin)")
+      ->add_option("--recipe", options->recipe,
+                   "Settings of the harmonic map and the flow: default, or paper (as Higher multipoles of the cow has "
+                   "them, about the mesh's origin)")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
   command
@@ -317,7 +316,7 @@ void add_expand(CLI::App& app, Common& common) {
           "(all), none")
       ->check(CLI::IsMember({"sample", "full", "none"}))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of the sample")->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of the sample")->capture_default_str();
   command->add_flag("--json", options->json, "The result as JSON on stdout (data/schemas/cowgpu.result.v1.json)");
   command
       ->add_option(

@@ -221,7 +221,7 @@ void add_figure(CLI::App& app, Common& common) {
       ->type_name("NAME");
   command
       ->add_option("--result", options->results,
-                   "Of orders and spectra: expansions from result files (FILE.json) of the mesh; can be repeated")
+                   "Result file (FILE.json) of the mesh, whose expansions orders and spectra take; can be repeated")
       ->allow_extra_args(false)
       ->type_name("FILE");
   command->add_option("--recipe", options->recipe, "paper: harmonic map and flow as the paper made them")
@@ -231,10 +231,10 @@ void add_figure(CLI::App& app, Common& common) {
       ->check(in_range(8, largest_surface_degree))
       ->type_name("L")
       ->capture_default_str();
-  command->add_option("--view", options->view, "Of surfaces: " + view_names() + ", or AZ,EL in degrees")
+  command->add_option("--view", options->view, "View of surfaces: " + view_names() + ", or AZ,EL in degrees")
       ->type_name("VIEW")
       ->capture_default_str();
-  command->add_option("--plane", options->plane, "Of streamlines: yz, xy or xz, or NX,NY,NZ,D")
+  command->add_option("--plane", options->plane, "Plane of streamlines: yz, xy or xz, or NX,NY,NZ,D")
       ->type_name("PLANE")
       ->capture_default_str();
   command->add_option("--count", options->lines, "Streamlines")

@@ -306,7 +306,7 @@ void add_inflate(CLI::App& app, Common& common) {
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--picture", options->picture, "The inflated bodies side by side, FILE.png")->type_name("FILE");
-  command->add_option("--view", options->view, "Of the picture: " + view_names() + ", or AZ,EL in degrees")
+  command->add_option("--view", options->view, "View of the picture: " + view_names() + ", or AZ,EL in degrees")
       ->type_name("VIEW")
       ->capture_default_str();
   command->add_option("--width", options->width, "Pixels of a panel of the picture")

@@ -96,8 +96,8 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
   if (application.asks_radius)
     command
         ->add_option("--brillouin-radius", options->brillouin_radius,
-                     "Of coefficients that do not say it: the radius of the sphere about their origin that holds the "
-                     "body, in their coordinates; nothing is computed inside")
+                     "Radius of the sphere about the origin of the coefficients that holds the body, in their "
+                     "coordinates, where they do not say it; nothing is computed inside")
         ->type_name("R");
   command
       ->add_option("--recipe", options->recipe,

@@ -449,7 +449,7 @@ Solve add_potential(CLI::App& command, Common& common) {
           "A sphere about the origin, of radius R: a length, or 1.5R for multiples of the sphere that holds the body "
           "(of the reference radius of a file that does not say it)")
       ->type_name("R");
-  command.add_option("--resolution", options->places.resolution, "Rings of its Gauss-Legendre grid")
+  command.add_option("--resolution", options->places.resolution, "Rings of the Gauss-Legendre grid of --sphere")
       ->check(in_range(1, largest_grid_degree + 1))
       ->capture_default_str()
       ->type_name("N");
@@ -478,15 +478,17 @@ Solve add_potential(CLI::App& command, Common& common) {
                    "The polyhedron's closed form everywhere, or where it is nearer to the truth (far away) its series");
   command.add_flag("--charge", options->charge, "--density is one of charge (C/m3): volts, and volts a metre");
   command.add_flag("--errors", options->errors,
-                   "Instead: relative errors of the series against the polyhedron, by distance and order");
-  command.add_option("--orders", options->orders, "Of --errors: 0..4,8")
+                   "Instead of the field, relative errors of the series against the polyhedron, by distance and order");
+  command.add_option("--orders", options->orders, "Orders of --errors, such as 0..4,8")
       ->capture_default_str()
       ->allow_extra_args(false)
       ->type_name("LIST");
-  command.add_option("--distances", options->distances, "Of --errors, in radii of the sphere that holds the body")
+  command
+      .add_option("--distances", options->distances,
+                  "Distances of --errors, in radii of the sphere that holds the body")
       ->capture_default_str()
       ->type_name("LIST");
-  command.add_option("--plot", options->plots, "Of --errors, a picture: FILE.png or FILE.svg; can be repeated")
+  command.add_option("--plot", options->plots, "Picture of what --errors finds: FILE.png or FILE.svg; can be repeated")
       ->allow_extra_args(false)
       ->type_name("FILE");
   command.add_option("-o,--output", options->output, "Point by point: FILE.csv or FILE.nc")->type_name("FILE");

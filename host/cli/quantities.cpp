@@ -59,7 +59,7 @@ void add_length_unit_option(CLI::App& command, std::string& text, const char* of
   command
       .add_option(
           "--length-unit", text,
-          fmt::format("{}: the length that 1 stands for, where the file does not say it (.sh and gravity tables: "
+          fmt::format("The length that 1 stands for in {}, where the file does not say it (.sh and gravity tables: "
                       "metres are assumed) or has it from its mesh: km, 2.3m ...",
                       of))
       ->type_name("LENGTH")

@@ -301,11 +301,14 @@ Solve add_radiate(CLI::App& command, Common&) {
           "Angular frequency with its unit: 90deg/s, 3rpm; 1Hz and 1/s are 1 rad/s, as in the paper; without this "
           "option 1rad/s")
       ->type_name("RATE");
-  command.add_option("--period", options->period, "Instead: the time of one turn with its unit, 1s")->type_name("TIME");
+  command.add_option("--period", options->period, "Time of one turn with its unit, such as 1s, instead of --omega")
+      ->type_name("TIME");
   command.add_option("--start", options->start, "When it began to turn, after the Big Bang (Julian years)")
       ->type_name("TIME")
       ->capture_default_str();
-  command.add_option("--age", options->age, "When its spin is asked for")->type_name("TIME")->capture_default_str();
+  command.add_option("--age", options->age, "When the spin is asked for, after the Big Bang")
+      ->type_name("TIME")
+      ->capture_default_str();
   command.add_flag("--octupole", options->octupole,
                    "Also the mass octupole and the current quadrupole, from the mesh's exact third moments");
   return [options](const PhysicsOptions& common) {

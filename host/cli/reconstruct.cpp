@@ -169,10 +169,9 @@ void add_reconstruct(CLI::App& app, Common& common) {
       ->type_name("LIST")
       ->allow_extra_args(false);
   command
-      ->add_option(
-          "--method,--of", options->source.of,
-          "Of a mesh the map: stretch (default), harmonic, smooth or flow; of a file the name of the expansion "
-          "(stretch where there is one)")
+      ->add_option("--method,--of", options->source.of,
+                   "Map of a mesh: stretch (default), harmonic, smooth or flow; or name of the expansion of a file "
+                   "(stretch where there is one)")
       ->type_name("NAME");
   command
       ->add_option("--fields", options->fields,
@@ -184,7 +183,7 @@ void add_reconstruct(CLI::App& app, Common& common) {
                    fmt::format("Degree of a mesh's expansion (the largest order, {} at least)", default_lmax))
       ->check(in_range(0, largest_surface_degree))
       ->type_name("L");
-  command->add_option("--mesh", options->source.mesh, "Of a file: the true body, for distances")->type_name("MESH");
+  command->add_option("--mesh", options->source.mesh, "The true body beside a file, for distances")->type_name("MESH");
   command
       ->add_option("--resolution", options->resolution,
                    "Vertices lie on 2 N + 1 rings of at least as many points (N: four times the order, 64 at least, "

@@ -155,7 +155,8 @@ void add_render(CLI::App& app, Common& common) {
           fmt::format("With --order: degree of a mesh's expansion (the largest order, {} at least)", default_lmax))
       ->check(in_range(0, largest_surface_degree))
       ->type_name("L");
-  command->add_option("--mesh", options->source.mesh, "Of a file: the true body, for --order mesh")->type_name("MESH");
+  command->add_option("--mesh", options->source.mesh, "The true body beside a file, for --order mesh")
+      ->type_name("MESH");
   command
       ->add_option("--resolution", options->resolution,
                    "Vertices of rebuilt bodies lie on 2 N + 1 rings (N: four times the order, 64 at least, 256 at "

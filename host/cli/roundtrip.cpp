@@ -191,7 +191,7 @@ void add_roundtrip(CLI::App& transform, Common& common) {
                   "gl (Gauss-Legendre), cc (Clenshaw-Curtis), dh (Driscoll-Healy, n x 2n), dh1 "
                   "(n x n), f1 (Fejer, cell-centred: n x 2n)");
   command->get_option("--grid")->capture_default_str();
-  command->add_option("--seed", options->seed, "Of the coefficients: std::mt19937_64, uniform in [-0.5, 0.5]")
+  command->add_option("--seed", options->seed, "Seed of the coefficients: std::mt19937_64, uniform in [-0.5, 0.5]")
       ->check(non_negative_number())
       ->capture_default_str();
   command->add_option("--runs", options->runs, "Timed runs after one to warm up; medians are shown")

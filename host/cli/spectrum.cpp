@@ -126,7 +126,7 @@ void add_spectrum(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand("spectrum", "Power per degree of coefficients in a file");
   command->add_option("FILE", options->input, "Coefficients of any format that `convert` reads, told by their content")
       ->required();
-  add_length_unit_option(*command, options->length_unit, "Of FILE");
+  add_length_unit_option(*command, options->length_unit, "FILE");
   command->add_flag("--cross", options->cross, "For two fields: their cross spectrum too");
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.spectrum.v1.json)");
   command->footer(

@@ -175,13 +175,13 @@ void add_streamlines(CLI::App& app, Common& common) {
                     ->type_name("N")
                     ->capture_default_str();
   auto* spacing =
-      command->add_option("--spacing", options->spacing, "Instead of their number: how far apart they start")
+      command->add_option("--spacing", options->spacing, "How far apart the lines start, instead of --count")
           ->check(positive_number())
           ->type_name("S")
           ->excludes(count);
   command
       ->add_option("--vertices", options->within,
-                   "Instead of starts on the cut: the mesh's vertices no farther than W from the plane")
+                   "Start at the mesh's vertices, not on the cut: at those no farther than W from the plane")
       ->check(non_negative_number())
       ->type_name("W")
       ->excludes(count)

@@ -203,7 +203,9 @@ Solve add_tides(CLI::App& command, Common&) {
                   "Radius of the circular orbit: 6771km, 1.1R_earth (R_earth is 6371 km, the earth's mean radius), 1au")
       ->type_name("RADIUS")
       ->required();
-  command.add_option("--mass", options->mass, "What it is about, a point: earth, moon, sun, or a mass: 6e24kg")
+  command
+      .add_option("--mass", options->mass,
+                  "Mass at the centre of the orbit, a point: earth, moon, sun, or a mass: 6e24kg")
       ->type_name("MASS")
       ->capture_default_str();
   command
@@ -224,7 +226,9 @@ Solve add_tides(CLI::App& command, Common&) {
                   fmt::format("Love number k2 of the body, above 0 to {}: with --quality and --spin the time to lock",
                               largest_love))
       ->type_name("NUMBER");
-  command.add_option("--quality", options->quality, fmt::format("Its quality factor Q, 1 to {:.0e}", largest_quality))
+  command
+      .add_option("--quality", options->quality,
+                  fmt::format("Quality factor Q of the body, 1 to {:.0e}", largest_quality))
       ->type_name("NUMBER");
   return [options](const PhysicsOptions& common) { return solve(common, *options); };
 }

@@ -378,7 +378,7 @@ Solve add_tip(CLI::App& command, Common& common) {
       ->allow_extra_args(false);
   command
       .add_option("--of", options->choice.of,
-                  "Of a mesh the map: stretch (default), harmonic, smooth or flow; of a file the expansion by name")
+                  "Map of a mesh: stretch (default), harmonic, smooth or flow; or name of the expansion of a file")
       ->type_name("NAME");
   command.add_option("--fields", options->choice.fields, "xyz, or f: distance and angles about the origin")
       ->check(CLI::IsMember({"xyz", "f"}))
@@ -395,7 +395,7 @@ Solve add_tip(CLI::App& command, Common& common) {
           "the order)")
       ->check(in_range(1, largest_grid_degree))
       ->type_name("N");
-  command.add_option("--mesh", options->choice.mesh, "Of a file: the true body")->type_name("MESH");
+  command.add_option("--mesh", options->choice.mesh, "The true body beside a file of coefficients")->type_name("MESH");
   command
       .add_option("--side", options->side,
                   "The side it falls to, about an axis along x (y is up): left (-z), right (+z), or the weaker")
@@ -412,7 +412,9 @@ Solve add_tip(CLI::App& command, Common& common) {
                   "Vertices so little above the ground touch it, in the mesh's unit or with one (1e-9 of the body)")
       ->type_name("LENGTH")
       ->check(not_empty());
-  command.add_option("--gravity", options->gravity, "In m/s^2")->check(positive_number())->capture_default_str();
+  command.add_option("--gravity", options->gravity, "Acceleration of gravity in m/s^2")
+      ->check(positive_number())
+      ->capture_default_str();
   command.add_option("--friction", options->friction, "Friction coefficient of the feet: do they slip first?")
       ->check(non_negative_number())
       ->type_name("MU");

@@ -159,11 +159,13 @@ void add_push_options(CLI::App& command, PushOptions& options) {
   command.add_option("--sustained", options.sustained, "A force that lasts, marked on the boundary")
       ->type_name("FORCE")
       ->capture_default_str();
-  command.add_option("--punch", options.punch, "A force of a moment: how long must it last?")
+  command
+      .add_option("--punch", options.punch, "Force of a punch, of which the least duration that tips the body is found")
       ->type_name("FORCE")
       ->capture_default_str();
   command
-      .add_option("--punch-duration", options.punch_duration, "How long it does last, such as 20ms: does it tip it?")
+      .add_option("--punch-duration", options.punch_duration,
+                  "Duration of the punch, such as 20ms, and whether it tips the body then")
       ->type_name("TIME")
       ->check(not_empty());
 }

@@ -261,7 +261,7 @@ void add_analyse(CLI::App& transform, Common& common) {
       *command, options->grid,
       "What the file's grid is: gl (Gauss-Legendre), cc (Clenshaw-Curtis, both poles), dh (Driscoll-Healy, n "
       "rings of 2n points), dh1 (n of n), f1 (Fejer: cell-centred) (default: as the file says)");
-  add_convention_options(*command, options->normalisation, options->phase, "Of the coefficients written");
+  add_convention_options(*command, options->normalisation, options->phase, "of the coefficients written");
   for (const char* option : {"--normalisation", "--phase"}) command->get_option(option)->capture_default_str();
   add_direction_options(*command, *options, common);
   command->footer(
@@ -287,7 +287,7 @@ void add_synthesise(CLI::App& transform, Common& common) {
       "gl (Gauss-Legendre), cc (Clenshaw-Curtis, both poles), dh (Driscoll-Healy, n rings of 2n points), dh1 "
       "(n of n), f1 (Fejer, cell-centred: n of 2n); for pyshtools take dh");
   command->get_option("--grid")->capture_default_str();
-  add_length_unit_option(*command, options->length_unit, "Of IN");
+  add_length_unit_option(*command, options->length_unit, "IN");
   add_direction_options(*command, *options, common);
   command->footer("Values have the unit of the coefficients; latitudes and longitudes are in degrees.\n"
                   "Example: cowgpu transform synthesise coefficients.nc map.nc --grid dh --lmax 180");

@@ -66,12 +66,14 @@ void add_validate(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand(
       "validate", "Compute by every path and by a slow reference, and compare; exit 1 if anything is out of bounds");
   command->add_option("mesh", options->body.mesh, mesh_help())->type_name("MESH")->capture_default_str();
-  command->add_option("--origin", options->body.origin, "As in expand: com (centre of mass), mesh, or X,Y,Z")
+  command->add_option("--origin", options->body.origin, "Origin, as in expand: com (centre of mass), mesh, or X,Y,Z")
       ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
       ->check(in_range(0, largest_degree))
       ->capture_default_str();
-  command->add_option("--cut-off", options->cut_off, "As in expand")->check(in_range(0.0, 1e-3))->capture_default_str();
+  command->add_option("--cut-off", options->cut_off, "Cut-off, as in expand")
+      ->check(in_range(0.0, 1e-3))
+      ->capture_default_str();
   add_common_options(*command, common);
   command->callback([options, &common] { run(*options, common); });
 }
