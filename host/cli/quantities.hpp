@@ -26,8 +26,8 @@ double parse_positive(const std::string& option, const std::string& text, Dimens
 /// What --length-unit says: a length with its unit, or a unit alone ("km"), in metres. Throws Error(bad_argument).
 double parse_length_unit(const std::string& text);
 
-/// Adds --length-unit to a command that reads files of coefficients; `of` names them in the help: "IN". Its text goes to read_in_unit() by way of
-/// stated_metres(), which is empty where the option is not given.
+/// Adds --length-unit to a command that reads files of coefficients; `of` names them in the help: "IN". Its text goes to
+/// read_in_unit() by way of stated_metres(), which is empty where the option is not given.
 void add_length_unit_option(CLI::App& command, std::string& text, const char* of);
 std::optional<double> stated_metres(const std::string& text);
 
