@@ -185,7 +185,7 @@ TEST_CASE("distance refuses what it cannot do with one line, a reason and an exi
   code({box, p, "--grid", "5"}, 2, "either POINTS or --grid");
   code({box, "--grid", "1"}, 2, "bad-argument");
   code({box, p, "-o", folder / "out.txt"}, 2, "bad-argument");
-  code({box, p, "-o", "-", "--json"}, 2, "both want the standard output");
+  code({box, p, "-o", "-", "--json"}, 2, "both write to the standard output");
   code({box, folder / "none.csv"}, 5, "cannot-read");
   code({box, p, "-o", folder / "none/out.csv"}, 5, "cannot-write");
   code({folder / "none.off", p}, 5, "cannot-read");

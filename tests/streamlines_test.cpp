@@ -294,6 +294,6 @@ TEST_CASE("the command writes lines as CSV and JSON, and says why it cannot", "[
   refuses({"--count", "5", "--spacing", "1"}, 2, "bad-argument");
   refuses({"--time", "-1"}, 2, "bad-argument");
   refuses({"-o", folder / "lines.nc"}, 2, "FILE.csv");
-  refuses({"-o", "-", "--json"}, 2, "both want the standard output");
+  refuses({"-o", "-", "--json"}, 2, "both write to the standard output");
   refuses({"-o", folder / "no/lines.csv"}, 5, "cannot-write");
 }

@@ -128,7 +128,7 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
       ->check(not_empty());
   command
       .add_option("--part", options.parts,
-                  "A part FILE=DENSITY: inside it so much is added to the density (negative: a hole); can be repeated. "
+                  "A part FILE=DENSITY: DENSITY is added inside its surface (negative: a hole); can be repeated. "
                   "Units, axes and attitude are those of MESH")
       ->type_name("FILE=DENSITY")
       ->allow_extra_args(false);

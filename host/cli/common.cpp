@@ -133,8 +133,9 @@ std::string convention_text(Convention convention) {
 std::string mesh_help() {
   std::string text = "A file (";
   for (const auto& format : mesh_formats()) text += fmt::format("{}, ", format.name);
-  text += "told by its content; - is standard input), a name that `cowgpu meshes` lists, such as benchmark (a file "
-          "called so is ./benchmark), or a built-in body:";
+  text +=
+      "recognised by its content; - is standard input), a name that `cowgpu meshes` lists, such as benchmark (a file "
+      "called so is ./benchmark), or a built-in body:";
   for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);
   return text;
 }

@@ -145,10 +145,10 @@ void add_convert(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("convert", "Coefficients in another file format, convention, radius or frame");
   command
-      ->add_option(
-          "IN", options->input,
-          "Coefficients, told by their content: JSON or CSV (of `expand` or `convert`), netCDF (as pyshtools writes "
-          "them), ICGEM's .gfc, SHTOOLS text, gravity tables (SHADR: .tab, .sha, .txt ...)")
+      ->add_option("IN", options->input,
+                   "Coefficients, recognised by their content: JSON or CSV (of `expand` or `convert`), netCDF (as "
+                   "pyshtools writes "
+                   "them), ICGEM's .gfc, SHTOOLS text, gravity tables (SHADR: .tab, .sha, .txt ...)")
       ->required();
   command->add_option("OUT", options->output, "FILE.json, .csv, .nc, .gfc or .sh")->required();
   command

@@ -111,9 +111,9 @@ void write_text_report(const Options& options, const Run& run, const Summary& su
                            options.without_sign ? "unsigned" : "signed", run.queries.size(), run.report.seconds, rate));
   write_stdout(fmt::format("distances: {:.17g} to {:.17g}\n", summary.smallest, summary.largest));
   if (!options.without_sign)
-    write_stdout(fmt::format("points: {} inside, {} outside, {} on the surface, {} where it winds neither once nor not "
-                             "at all\n",
-                             summary.inside, summary.outside, summary.on_surface, summary.overlapped));
+    write_stdout(fmt::format(
+        "points: {} inside, {} outside, {} on the surface, {} where the winding number is neither 0 nor 1\n",
+        summary.inside, summary.outside, summary.on_surface, summary.overlapped));
   write_stdout("device: " + device_line(run.device) + "\n");
   write_stdout(fmt::format("time: read {:.3f} s, set-up {:.3f} s, distances {:.3f} s, write {:.3f} s\n",
                            run.read_seconds, run.setup_seconds, run.report.seconds, run.write_seconds));
@@ -131,7 +131,7 @@ void run(const Options& options, const Common& common) {
     throw Error(Fault::bad_argument, "either POINTS or --grid says where distances are wanted, and not both");
   const bool to_stdout = options.output == "-";
   if (to_stdout && options.json)
-    throw Error(Fault::bad_argument, "--json and -o - both want the standard output; name a file");
+    throw Error(Fault::bad_argument, "--json and -o - both write to the standard output; name a file");
   const FileFormat format = options.output.empty() || to_stdout ? FileFormat::csv : file_format(options.output);
   std::unique_ptr<AtomicFile> file;
   if (!to_stdout) {

@@ -185,7 +185,7 @@ void run(const Options& options, const Common& common) {
 
 void add_map(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("map", "A map of a mesh of genus 0 to the sphere, and what it is worth");
+  CLI::App* command = app.add_subcommand("map", "A map of a mesh of genus 0 to the sphere, and its quality");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
   add_mend_options(*command, options->mending);
   command
@@ -245,8 +245,8 @@ void add_map(CLI::App& app, Common& common) {
   CLI::Option* relabellings =
       command
           ->add_option("--relabellings", options->relabellings,
-                       "stretch: map so many copies of the body, numbered and turned at random, as well, and say how "
-                       "many come to the same map (each takes as long as the first)")
+                       "stretch: map N copies of the body, numbered and turned at random, as well, and count those "
+                       "that come to the same map (each takes as long as the first)")
           ->check(in_range(0U, 10000U))
           ->type_name("N")
           ->capture_default_str();

@@ -87,10 +87,9 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
   CLI::App* command = app.add_subcommand(application.name, application.summary);
   const auto options = std::make_shared<PhysicsOptions>();
   add_body_options(*command, options->body);
-  command->get_option("mesh")->description(
-      "Coefficients of its mass (JSON, CSV, netCDF, ICGEM's .gfc, SHTOOLS text or a gravity table, told by their "
-      "content), or a mesh: " +
-      command->get_option("mesh")->get_description());
+  command->get_option("mesh")->description("Coefficients of its mass (JSON, CSV, netCDF, ICGEM's .gfc, SHTOOLS text or "
+                                           "a gravity table, recognised by their content), or a mesh: " +
+                                           command->get_option("mesh")->get_description());
   command->get_option("mesh")->type_name("MESH|COEFFS");
   const Solve solve = application.add(*command, common);
   if (application.asks_radius)

@@ -46,7 +46,7 @@ public:
     if (fd_ < 0) throw Error(Fault::cannot_write, fmt::format("{}: {}", file.string(), std::strerror(errno)));
     if (flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
     close(fd_);
-    throw Error(Fault::bad_argument, fmt::format("another `cowgpu reproduce` is at work in {}; wait for it, or take "
+    throw Error(Fault::bad_argument, fmt::format("another `cowgpu reproduce` is running in {}; wait for it, or take "
                                                  "another folder",
                                                  file.parent_path().parent_path().string()));
   }

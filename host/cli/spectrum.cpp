@@ -124,7 +124,9 @@ void run(const Options& options, const Common& common) {
 void add_spectrum(CLI::App& app, Common& common) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("spectrum", "Power per degree of coefficients in a file");
-  command->add_option("FILE", options->input, "Coefficients of any format that `convert` reads, told by their content")
+  command
+      ->add_option("FILE", options->input,
+                   "Coefficients of any format that `convert` reads, recognised by their content")
       ->required();
   add_length_unit_option(*command, options->length_unit, "FILE");
   command->add_flag("--cross", options->cross, "For two fields: their cross spectrum too");

@@ -70,7 +70,7 @@ void run(const Options& options, const Common& common) {
   const Layout layout = layout_of(options.output);
   const bool to_stdout = options.output == "-";
   if (to_stdout && options.json)
-    throw Error(Fault::bad_argument, "--json and -o - both want the standard output; name a file");
+    throw Error(Fault::bad_argument, "--json and -o - both write to the standard output; name a file");
   StreamlineTable table;
   table.plane = parse_plane(options.plane);
   const auto origin = parse_point(options.origin);

@@ -62,9 +62,9 @@ Findings solve(const PhysicsOptions& options, bool inertia_wanted) {
   if (!si)
     found.notes.push_back("lengths and densities are in the mesh's units; --length-unit or --length make them SI");
   if (principal.first_two_alike && principal.last_two_alike)
-    found.notes.push_back("all three principal moments are alike: any axes would do");
+    found.notes.push_back("all three principal moments are equal: any axes would do");
   else if (principal.first_two_alike || principal.last_two_alike)
-    found.notes.push_back(fmt::format("the {} two principal moments are alike: their axes are any two in their plane",
+    found.notes.push_back(fmt::format("the {} two principal moments are equal: their axes are any two in their plane",
                                       principal.first_two_alike ? "first" : "last"));
   found.notes.push_back("principal axes by growing moment; the largest component of the first two is positive, and "
                         "the third is the first cross the second");

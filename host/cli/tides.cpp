@@ -161,10 +161,10 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
       "and C are the principal axes by growing moment of inertia");
   if (isotropic)
     found.notes.push_back(
-        "all three moments of inertia are alike: degree 2 turns this body nowhere, no attitude is better "
+        "all three moments of inertia are equal: degree 2 exerts no torque on this body, no attitude is better "
         "than another and nothing librates or locks");
   else if (t.principal.first_two_alike || t.principal.last_two_alike)
-    found.notes.push_back("two moments of inertia are alike: about the axis of symmetry the body turns freely");
+    found.notes.push_back("two moments of inertia are equal: about the axis of symmetry the body turns freely");
   found.rows = {{"mass_kg", "mass", t.body.mass, "kg"},
                 {"centre", "centre of the orbit",
                  t.centre.name.empty() ? Value(std::string("a point mass")) : Value(t.centre.name)},

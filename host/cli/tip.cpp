@@ -255,7 +255,7 @@ void add_notes(const Stood& stood, const TipInput& input, const Options& options
     found.notes.push_back(settled_note(stance.attitude));
   if (stance.attitude.balanced)
     found.notes.push_back(
-        "on the way it stood on a corner or an edge in balance; it was let fall to the right, or off the "
+        "on the way it stood on a corner or an edge in balance; it was made to fall to the right, or off the "
         "edge");
   if (stance.held)
     found.notes.push_back(
@@ -408,8 +408,9 @@ Solve add_tip(CLI::App& command, Common& common) {
   command.add_flag("--as-modelled", options->as_modelled,
                    "Do not let it settle on a facet of its hull: the ground is the plane of least y");
   command
-      .add_option("--contact-tolerance", options->tolerance,
-                  "Vertices so little above the ground touch it, in the mesh's unit or with one (1e-9 of the body)")
+      .add_option(
+          "--contact-tolerance", options->tolerance,
+          "Height above the ground up to which vertices touch it, in the mesh's unit or with one (1e-9 of the body)")
       ->type_name("LENGTH")
       ->check(not_empty());
   command.add_option("--gravity", options->gravity, "Acceleration of gravity in m/s^2")

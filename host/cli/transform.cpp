@@ -277,7 +277,7 @@ void add_synthesise(CLI::App& transform, Common& common) {
   CLI::App* command = transform.add_subcommand("synthesise", "Fields on a grid from their coefficients");
   command
       ->add_option("IN", options->input,
-                   "Coefficients of any convention and of any format that `convert` reads, told by their content")
+                   "Coefficients of any convention and of any format that `convert` reads, recognised by their content")
       ->required();
   command->add_option("OUT", options->output, "Grid file, .nc or .csv (lat,lon,value)")->required();
   add_degree_option(*command, options->lmax,

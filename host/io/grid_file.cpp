@@ -328,10 +328,11 @@ std::vector<NetcdfField> fields_over(const NetcdfFile& netcdf, std::size_t lat, 
     const NetcdfAttribute* is_unsigned = attribute(v.attributes, "_Unsigned");
     if (is_unsigned && is_unsigned->is_text && is_unsigned->text == "true" &&
         std::any_of(v.values.begin(), v.values.end(), [](double value) { return value < 0; }))
-      throw Error(Fault::file_format,
-                  fmt::format("{}: variable {} has unsigned numbers in a signed type (_Unsigned); write "
-                              "it anew as short or float",
-                              netcdf.name, shown(v.name)));
+      throw Error(
+          Fault::file_format,
+          fmt::format(
+              "{}: variable {} has unsigned numbers in a signed type (_Unsigned); write it again as short or float",
+              netcdf.name, shown(v.name)));
     list.push_back(&v);
     if (attribute(v.attributes, "scale_factor") || attribute(v.attributes, "add_offset"))
       notes.push_back(fmt::format("variable {} is packed: scale_factor and add_offset were applied", shown(v.name)));

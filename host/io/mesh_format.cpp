@@ -114,15 +114,17 @@ const MeshFormat& mesh_format_of(std::string_view bytes, const std::string& name
   for (const MeshFormat& format : formats) names += fmt::format("{}{}", names.empty() ? "" : ", ", format.name);
   if (const std::string_view other = other_format(bytes); !other.empty())
     refuse(Fault::file_format,
-           fmt::format("this is a file of {}, which is not read. Read are {}; export the mesh as one of these.", other,
-                       names));
+           fmt::format(
+               "this is a file of {}, which is not read. The formats read are {}; export the mesh as one of these.",
+               other, names));
   if (const MeshFormat* format = by_content(bytes, suffix)) return *format;
   if (suffix) return *suffix; // its reader says what is wrong
   if (bytes.empty()) refuse(Fault::file_truncated, "the file is empty. Fetch or export it again.");
   const std::string_view word = WordScanner(without_byte_order_mark(bytes)).word();
   refuse(Fault::file_format,
-         fmt::format("this is not a mesh file: it begins with '{}'. Read are {}; export the mesh as one of these.",
-                     shown(word), names));
+         fmt::format(
+             "this is not a mesh file: it begins with '{}'. The formats read are {}; export the mesh as one of these.",
+             shown(word), names));
   return formats[off]; // refuse() throws
 }
 

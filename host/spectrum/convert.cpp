@@ -65,7 +65,7 @@ double mass_of(const CoefficientSet& set) {
     return double(std::sqrt(sphere) * Real(q.at(0, 0, 0).real()));
   }
   throw Error(Fault::bad_argument, "these potential coefficients say neither a mass nor the constant G in their GM, so "
-                                   "there are no multipoles to be had from them; --si takes metres and kilograms");
+                                   "no multipoles can be computed from them; --si takes metres and kilograms");
 }
 
 double gravitational_constant(const CoefficientSet& set) {
