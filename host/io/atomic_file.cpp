@@ -186,8 +186,11 @@ void AtomicFile::copy_to_named() {
 // Also called from the constructor, where no destructor would follow.
 void AtomicFile::fail(int reason) {
   discard();
-  throw Error(Fault::cannot_write,
-              fmt::format("{}: cannot be written: {}.", shown_.string(), std::generic_category().message(reason)));
+  throw Error(
+      Fault::cannot_write,
+      fmt::format(
+          "{}: cannot be written: {}. Check the folder, its permissions and its free space, or name another file.",
+          shown_.string(), std::generic_category().message(reason)));
 }
 
 void AtomicFile::discard() noexcept {

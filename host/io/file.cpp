@@ -19,8 +19,8 @@ constexpr std::size_t chunk = std::size_t{1} << 16;
 constexpr std::size_t endless = std::size_t{1} << 30; // most bytes of a pipe or a device
 
 [[noreturn]] void fail(const std::filesystem::path& path, int reason) {
-  throw Error(Fault::cannot_read,
-              fmt::format("{}: cannot be read: {}.", path.string(), std::generic_category().message(reason)));
+  throw Error(Fault::cannot_read, fmt::format("{}: cannot be read: {}. Check the path and its permissions.",
+                                              path.string(), std::generic_category().message(reason)));
 }
 
 struct Descriptor {

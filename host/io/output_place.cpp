@@ -23,8 +23,11 @@ constexpr int max_links = 40; // as Linux
 constexpr std::size_t longest_link = 1 << 16;
 
 [[noreturn]] void fail(const fs::path& path, int reason) {
-  throw Error(Fault::cannot_write,
-              fmt::format("{}: cannot be written: {}.", path.string(), std::generic_category().message(reason)));
+  throw Error(
+      Fault::cannot_write,
+      fmt::format(
+          "{}: cannot be written: {}. Check the folder, its permissions and its free space, or name another file.",
+          path.string(), std::generic_category().message(reason)));
 }
 
 // Root can do everything anyway.

@@ -44,8 +44,9 @@ void check_brackets(const std::string& name, const std::string& bytes) {
 
 [[noreturn]] void refuse(const std::string& name, const std::string& bytes, std::size_t byte) {
   const auto line = 1 + std::count(bytes.begin(), bytes.begin() + std::ptrdiff_t(std::min(byte, bytes.size())), '\n');
-  throw Error(Fault::file_syntax, fmt::format("{}:{}: this breaks the grammar of JSON (byte {}{})", name, line, byte,
-                                              byte > bytes.size() ? ", where the file ends" : ""));
+  throw Error(Fault::file_syntax, fmt::format("{}:{}: this is not JSON, or it is damaged (byte {}{}); write the file "
+                                              "again with `cowgpu expand` or `cowgpu convert`",
+                                              name, line, byte, byte > bytes.size() ? ", where the file ends" : ""));
 }
 
 template <class Json>
@@ -58,7 +59,8 @@ Json parse_as(const std::string& name, const std::string& bytes) {
   } catch (const typename Json::parse_error& error) {
     refuse(name, bytes, error.byte);
   } catch (const typename Json::exception&) { // a number beyond a double
-    throw Error(Fault::file_syntax, fmt::format("{}: this JSON holds a number that fits no double", name));
+    throw Error(Fault::file_syntax,
+                fmt::format("{}: this JSON holds a number beyond the range of doubles; write the file again", name));
   }
 }
 
