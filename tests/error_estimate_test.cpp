@@ -8,6 +8,7 @@
 #include "host/reference/moments.hpp"
 #include "host/spectrum/verify.hpp"
 #include "tests/support/compare_moments.hpp"
+#include "tests/support/cpu_with_a_fault.hpp"
 #include "tests/support/fields.hpp"
 #include "tests/support/mesh_files.hpp"
 #include "tests/support/meshes.hpp"
@@ -167,41 +168,21 @@ void check_estimate(const std::string& name, const Checked& found, const std::ve
   CHECK(found.accuracy.passed());
 }
 
-/// The CPU path with a fault.
-class Faulty : public Backend {
+class Faulty : public CpuWithAFault {
 public:
   using Fault = std::function<void(Coefficients&)>;
   explicit Faulty(Fault fault, bool loses_a_triangle = false)
-      : cpu_(make_cpu_backend()), fault_(std::move(fault)), loses_a_triangle_(loses_a_triangle) {}
+      : fault_(std::move(fault)), loses_a_triangle_(loses_a_triangle) {}
 
-  const DeviceFacts& facts() const override { return cpu_->facts(); }
   Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
     MomentProblem other = problem;
     if (loses_a_triangle_) other.faces = other.faces.first(other.faces.size() - 1);
-    Coefficients q = cpu_->moments(other, monitor, report);
+    Coefficients q = CpuWithAFault::moments(other, monitor, report);
     fault_(q);
     return q;
   }
-  MemoryNeed moments_memory(const MomentProblem& problem) const override { return cpu_->moments_memory(problem); }
-
-  [[noreturn]] static void unused() { throw std::logic_error("not asked for here"); }
-  std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid&, int) override { unused(); }
-  MemoryNeed sphere_transform_memory(const SphereGrid&, int, int) const override { unused(); }
-  SphereSamples sample(std::span<const Vec3>, std::span<const Face>, const SphereGrid&, Monitor&, RunReport*) override {
-    unused();
-  }
-  MemoryNeed sample_memory(std::uint64_t, const SphereGrid&) const override { unused(); }
-  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3>, std::span<const Face>) override { unused(); }
-  MemoryNeed distance_field_memory(std::uint64_t, std::uint64_t, std::uint64_t) const override { unused(); }
-  std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3>, std::span<const Face>) override { unused(); }
-  MemoryNeed distance_flow_memory(std::uint64_t, std::uint64_t, std::uint64_t) const override { unused(); }
-  PotentialField potential(const PotentialProblem&, Monitor&, RunReport*) override { unused(); }
-  MemoryNeed potential_memory(std::uint64_t, int, Derivatives) const override { unused(); }
-  Image render(const RenderScene&, Monitor&) override { unused(); }
-  double measured_peak() override { unused(); }
 
 private:
-  std::unique_ptr<Backend> cpu_;
   Fault fault_;
   bool loses_a_triangle_;
 };
