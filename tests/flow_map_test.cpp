@@ -101,7 +101,10 @@ TEST_CASE("far from the coordinates' zero the level set's uncertainty holds what
       for (int m = 0; m <= l; ++m)
         CHECK(std::abs(far.expansion.coefficients.at(f, l, m) - near.expansion.coefficients.at(f, l, m)) <=
               far.uncertainty[std::size_t(l)][std::size_t(f)]);
-      CHECK(far.uncertainty[std::size_t(l)][std::size_t(f)] < 1.7e-3);
+      // Places on the level set are known to 4e-16 of the coordinates over the slope; sqrt(4 pi) makes coefficients of that.
+      const double rounding = std::sqrt(4 * M_PI) * 4e-16 * away;
+      CHECK(far.uncertainty[std::size_t(l)][std::size_t(f)] <
+            near.uncertainty[std::size_t(l)][std::size_t(f)] + 3 * rounding);
     }
 }
 
@@ -317,8 +320,8 @@ TEST_CASE("means over the cells at jumps bring the grid's error down, and leave 
   CHECK((jumps.cells > 100 && jumps.cells < jumps.points / 10));
   const double averaged = largest(of(two, options.origin, 128, 4, jumps), truth);
   CAPTURE(plain, averaged);
-  CHECK(averaged < plain / 3);
+  CHECK(averaged < plain / 10);
   const double moved = largest(of(one, {0, 0, 0}, 128, 4, jumps), of(one, {0, 0, 0}, 128, 1, jumps));
   CAPTURE(moved);
-  CHECK(moved < averaged / 4);
+  CHECK(moved < plain / 40);
 }

@@ -208,8 +208,9 @@ TEST_CASE("directions that do not settle enter the uncertainty, and beyond it ar
   const LevelSetExpansion found = expand_level_set(box({1, 1, 1}, {-0.5, -0.5, -0.5}), 0.3, options, backend, monitor);
   const double cone = 2 * std::numbers::pi * 0.05;
   CHECK(found.level_set.unsettled > 0);
-  CHECK(found.level_set.unsettled_angle == Approx(cone).epsilon(0.1));
-  CHECK(found.uncertainty[0][0] > cone * 0.5 / std::sqrt(4 * std::numbers::pi));
+  // Some directions end on a place that looks settled by chance.
+  CHECK((found.level_set.unsettled_angle > 0.75 * cone && found.level_set.unsettled_angle < 1.05 * cone));
+  CHECK(found.uncertainty[0][0] > found.level_set.unsettled_angle * 0.5 / std::sqrt(4 * std::numbers::pi));
   CHECK_THAT(found.failure, Contains("did not settle on the level set") && Contains("--time"));
 }
 

@@ -75,7 +75,7 @@ std::vector<std::array<double, 6>> with_neighbours(const std::vector<std::array<
       for (std::size_t k = l < 2 ? 0 : l - 2; k <= std::min(l + 2, last); ++k)
         for (std::size_t g = 0; g < 6; ++g)
           if ((g == 1 || g == 2) == angle) most = std::max(most, change[k][g]);
-      rows[l][f] = 1.5 * most;
+      rows[l][f] = 1.4 * most;
     }
   return rows;
 }

@@ -44,7 +44,7 @@ struct LevelSetExpansion {
   LevelSetReport level_set;
   StarShapeTime star; ///< looked for even where the time is given
   double time = 0;    ///< T
-  /// [degree][field]: the largest over m of what a coefficient is off by. 1.5 times the largest difference from two
+  /// [degree][field]: the largest over m of what a coefficient is off by. 1.4 times the largest difference from two
   /// turned grids of half the degree, or a third of what one of them differs by from a grid of a quarter, among the fields of
   /// one kind (lengths, angles) and the two degrees on either side; and
   /// what rounding does, what spikes leave open that the grid does not resolve (CellMeansReport), what the bounds of the
