@@ -9,8 +9,10 @@ namespace cowgpu {
 
 struct MomentTerms {
   Coefficients sum; ///< Q_lm / R^l
-  /// A_l = sqrt(sum over triangles of |t_l|^2) of each degree, |t_l| the norm over all orders of a triangle's share in
-  /// Q_lm / R^l.
+  /// A_l of each degree, with |t_l| the norm over all orders of a triangle's share in Q_lm / R^l, and s_l what it would be
+  /// were nothing cancelled within the triangle:
+  ///   A_l^2 = sum over triangles of |t_l|^2 + (s_l / (8 + l))^2,  s_l = sqrt((2 l + 1) / 4 pi) density / R^l times
+  ///   the integral of (x |A| + y |B| + z |C|)^l >= r^l over the triangle's tetrahedron, x, y, z barycentric.
   std::vector<double> root;
 };
 

@@ -5,6 +5,7 @@
 #include "host/mesh/builtin.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/sphere_directions.hpp"
+#include "tests/support/cpu_with_a_fault.hpp"
 #include "tests/support/level_set_reference.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/run_program.hpp"
@@ -101,6 +102,30 @@ public:
   }
 };
 
+// Distances that are right but in a cone about +z, where nothing can be settled.
+class UnsureUp : public DistanceField {
+public:
+  explicit UnsureUp(std::unique_ptr<DistanceField> field) : field_(std::move(field)) {}
+  ClosestPoints closest(std::span<const Vec3> queries, const ClosestOptions& options, Monitor& monitor,
+                        ClosestReport* report) override {
+    ClosestPoints points = field_->closest(queries, options, monitor, report);
+    for (std::size_t i = 0; i < queries.size(); ++i)
+      if (queries[i].z() > 0.95 * queries[i].norm() && queries[i].norm() > 0.2)
+        points.distance[i] *= std::sin(1e15 * queries[i].sum()) > 0 ? 2 : 0.5;
+    return points;
+  }
+
+private:
+  std::unique_ptr<DistanceField> field_;
+};
+
+class UnsureBackend : public CpuWithAFault {
+public:
+  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces) override {
+    return std::make_unique<UnsureUp>(CpuWithAFault::distance_field(vertices, faces));
+  }
+};
+
 } // namespace
 
 TEST_CASE(
@@ -169,7 +194,57 @@ TEST_CASE("directions that do not settle are counted with their solid angle", "[
   Monitor monitor;
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, 8);
   LevelSetReport report;
-  (void)level_set_positions(field, {-1, -1, -1}, {1, 1, 1}, Vec3::Zero(), 0.5, grid, monitor, &report);
+  (void)level_set_positions({field, {{-1, -1, -1}, {1, 1, 1}}, Vec3::Zero(), 0.5}, grid, monitor, &report);
   CHECK(report.unsettled == grid.points());
   CHECK(report.unsettled_angle == Approx(4 * std::numbers::pi));
+}
+
+TEST_CASE("directions that do not settle enter the uncertainty, and beyond it are a failure", "[level_set]") {
+  UnsureBackend backend;
+  Monitor monitor;
+  ExpandSurfaceOptions options;
+  options.lmax = 2;
+  options.grid_degree = 64;
+  const LevelSetExpansion found = expand_level_set(box({1, 1, 1}, {-0.5, -0.5, -0.5}), 0.3, options, backend, monitor);
+  const double cone = 2 * std::numbers::pi * 0.05;
+  CHECK(found.level_set.unsettled > 0);
+  // Some directions end on a place that looks settled by chance.
+  CHECK((found.level_set.unsettled_angle > 0.75 * cone && found.level_set.unsettled_angle < 1.05 * cone));
+  CHECK(found.uncertainty[0][0] > found.level_set.unsettled_angle * 0.5 / std::sqrt(4 * std::numbers::pi));
+  CHECK_THAT(found.failure, Contains("did not settle on the level set") && Contains("--time"));
+}
+
+TEST_CASE("what is thinner than a cell of the grid is known to its uncertainty", "[level_set]") {
+  const Eigen::Matrix3d turn = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized().toRotationMatrix();
+  const auto turned = [&](RawMesh mesh) {
+    for (Vec3& v : mesh.vertices) v = turn * v;
+    return mesh;
+  };
+  const auto plate = [](double thickness) { return box({1, 2, thickness}, {-0.5, -1, -thickness / 2}); };
+  const Vec3 zero = Vec3::Zero();
+  const std::vector<Case> cases = {
+      {"plate of 0.01", plate(0.01), zero, 0},
+      {"plate of 0.01, origin off its middle",
+       plate(0.01),
+       {0.34622219140704946, -0.03875513288549837, 0.0023885604},
+       0},
+      {"plate of 0.003", plate(0.003), zero, 0},
+      {"plate of 0.0001", plate(1e-4), zero, 0},
+      {"plate of 0.00001", plate(1e-5), zero, 0},
+      {"plate of 0.003, turned", turned(plate(0.003)), zero, 0},
+      {"plate of 0.0001, turned", turned(plate(1e-4)), zero, 0},
+      {"needle of 0.001", box({0.001, 0.0013, 1}, {-0.0005, -0.00065, -0.5}), zero, 0},
+      {"needle along x", box({1, 0.01, 0.02}, {-0.5, -0.005, -0.01}), {0.2, 0.001, -0.003}, 0},
+      {"needle of 0.003, turned", turned(box({0.003, 0.003, 1}, {-0.0015, -0.0015, -0.5})), zero, 0},
+      {"plate of 0.001 at 0.01", box({1, 1, 0.001}, {-0.5, -0.5, -0.0005}), {0.2, 0.1, 0}, 0.01},
+  };
+  for (const Case& c : cases)
+    for (const int grid : {64, 128}) {
+      CAPTURE(c.what, grid);
+      const LevelSetExpansion found = expansion_of(c.mesh, c.origin, c.time, grid);
+      const LevelSetCoefficients truth = level_set_coefficients(c.mesh, c.origin, c.time, 3, 1e-7);
+      CHECK(worst_part(found, truth, 6) <= 1);
+      CHECK(found.uncertainty[0][0] < 4e-3);
+      CHECK(found.sutures.jumps.pairs == 0); // steep, but without a jump
+    }
 }

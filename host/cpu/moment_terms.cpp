@@ -94,6 +94,7 @@ public:
     for (std::size_t n = 0; n < root_.size(); ++n) root_[n] = std::sqrt(double(n));
     for (std::size_t b = 0; b < blocks_at_once; ++b) rows_.push_back(zeros(stride() * cpu::term_column_doubles()));
     corners_ = zeros(blocks_at_once * 9 * lanes_);
+    sizes_ = zeros(blocks_at_once * 6 * lanes_);
     scaled_ = zeros(9 * lanes_);
   }
 
@@ -109,7 +110,8 @@ public:
         for (std::size_t k = 0; k < 9 * lanes_; ++k) scaled_[k] = corners[k] / l;
         squares_[std::size_t(l)] +=
             cpu::raise_terms(l, {factors_.data(), factors_.data() + stride(), factors_.data() + 2 * stride()},
-                             scaled_.get(), rows_[b].get(), sums_.get() + row_offset(l));
+                             scaled_.get(), rows_[b].get(), sums_.get() + row_offset(l)) +
+            raise_sizes(l, b);
       }
     }
   }
@@ -131,8 +133,30 @@ private:
       const double det = first + lane < terms_.inputs.size() ? terms_.inputs[t][9] * y00 : 0;
       for (std::size_t k = 0; k < 9; ++k) corners_[(b * 9 + k) * lanes_ + lane] = terms_.inputs[t][k];
       for (std::size_t k = 0; k < 3; ++k) rows[2 * k * lanes_ + lane] = det;
+      double* sizes = sizes_.get() + b * 6 * lanes_ + lane;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double* corner = &terms_.inputs[t][3 * k];
+        sizes[k * lanes_] = std::hypot(corner[0], corner[1], corner[2]);
+        sizes[(3 + k) * lanes_] = std::abs(det);
+      }
       squares_[0] += det * det;
     }
+  }
+
+  // Advances a block's s_l by a degree, and adds up (s_l / (8 + l))^2. With a, b, c the corners' distances from the origin,
+  // the integral of (a x + b y + c z)^l over a tetrahedron is det l! / (l + 3)! times the sum of all monomials of degree l in them.
+  double raise_sizes(int l, std::size_t b) {
+    double *sizes = sizes_.get() + b * 6 * lanes_, *sums = sizes + 3 * lanes_, square = 0;
+    for (std::size_t lane = 0; lane < lanes_; ++lane) {
+      double monomials = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        double& sum = sums[k * lanes_ + lane];
+        sum = sizes[k * lanes_ + lane] * sum + monomials;
+        monomials = sum;
+      }
+      square += monomials * monomials;
+    }
+    return (2.0 * l + 1) / ((8.0 + l) * (8.0 + l)) * square;
   }
 
   // sqrt(k (l-m)(l+m)), sqrt(k (l-m)(l-m-1))/2, -sqrt(k (l+m)(l+m-1))/2, k = (2l+1)/(2l-1): as in the reference.
@@ -155,6 +179,7 @@ private:
   std::vector<double> squares_, root_, factors_;
   std::vector<Doubles> rows_;
   Doubles corners_, scaled_;
+  Doubles sizes_; ///< of each block: the corners' distances, and sums of monomials of one, two and three of them
 };
 
 } // namespace
@@ -210,7 +235,8 @@ MomentTerms moment_terms(const MomentProblem& problem, unsigned threads, const M
 std::uint64_t moment_terms_bytes(const MomentProblem& problem) {
   const std::uint64_t rows = blocks_at_once * (std::uint64_t(problem.lmax) + 8) * 6 * 8 * 8;
   return 16 * Coefficients::count(problem.lmax) + 256 * std::uint64_t(problem.faces.size()) +
-         partial_sums(problem) * (8 * row_offset(problem.lmax + 1) + rows + 64 * std::uint64_t(problem.lmax) + 4096);
+         partial_sums(problem) * (8 * row_offset(problem.lmax + 1) + rows + blocks_at_once * 6 * 8 * 8 +
+                                  64 * std::uint64_t(problem.lmax) + 4096);
 }
 
 } // namespace cowgpu

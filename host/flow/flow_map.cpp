@@ -23,7 +23,7 @@ constexpr double paper_step = 0.05;
 constexpr double suture_threshold = 0.04; // diagonals
 // Of the grids that are compared: edges along one are not along another.
 constexpr std::array turns = {EulerAngles{0.6, 1.1, 2.3}, EulerAngles{2.7, 0.7, 1.9}, EulerAngles{1.7, 2.0, 0.4}};
-constexpr int level_set_grid_degree = 1024, sheet_grid_degree = 1024, parts_of_cell = 4, slope_from = 16;
+constexpr int level_set_grid_degree = 1024, sheet_grid_degree = 1024, slope_from = 16;
 
 // The mean of an angle is kept as a number, not as a coefficient.
 void put_means(SurfaceExpansion& expansion) {
@@ -173,13 +173,17 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
                     result.star.upper - result.star.lower, tolerance, result.star.lower, result.star.upper));
   const auto field = backend.distance_field(mesh.vertices, mesh.faces);
   result.sutures.threshold = suture_threshold * diagonal;
-  const auto fields_on = [&](double level, const SphereGrid& grid, LevelSetReport& met, JumpReport& jumps,
+  const auto fields_on = [&](double level, const SphereGrid& grid, LevelSetReport& met, CellMeansReport& means,
                              SutureReport* sutures, const Eigen::Matrix3d& turn) {
-    const auto positions =
-        level_set_positions(*field, box.min, box.max, options.origin, level, grid, monitor, &met, turn);
-    if (sutures) *sutures = find_sutures(positions, grid, result.sutures.threshold);
-    return averaged_fields(*field, box.min, box.max, options.origin, level, grid, positions, options.signed_dphi,
-                           parts_of_cell, monitor, &jumps, turn);
+    const LevelSet set{*field, box, options.origin, level};
+    const auto positions = level_set_positions(set, grid, monitor, &met, turn);
+    // The radial function of a body that is star-shaped as it is has no jumps, however steep it is.
+    if (sutures && !(time == 0 && result.star.lower == 0))
+      *sutures = find_sutures(positions, grid, result.sutures.threshold, [&](std::span<const Vec3> directions) {
+        return level_set_points(set, directions, monitor).points;
+      });
+    return cell_mean_fields(set, mesh.vertices, mesh.faces, grid, positions, options.signed_dphi, {}, monitor, &means,
+                            turn);
   };
   ExpandSurfaceOptions of_grid = options;
   of_grid.grid_degree = options.grid_degree > 0 ? options.grid_degree
@@ -198,8 +202,8 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, degree);
     SphereCoefficients a(std::min(options.lmax, degree), last.fields);
     LevelSetReport met;
-    JumpReport jumps;
-    const std::vector<double> values = fields_on(level, grid, met, jumps, nullptr, rotation_matrix(turn));
+    CellMeansReport means;
+    const std::vector<double> values = fields_on(level, grid, met, means, nullptr, rotation_matrix(turn));
     backend.sphere_transform(grid, a.lmax)->analyse(last.fields, values, a.values, monitor);
     return rotate(a, turn, monitor);
   };
@@ -214,6 +218,10 @@ LevelSetExpansion expand_level_set(const RawMesh& mesh, double time, const Expan
     for (std::size_t f = 0; f < 6; ++f) change[l][f] = std::max({change[l][f], again[l][f], before[l][f] / 3});
   change = with_neighbours(change);
   add_rounding(box, result.level_set, last, change);
+  for (std::size_t l = 0; l < change.size(); ++l)
+    for (std::size_t f = 0; f < 6; ++f)
+      change[l][f] += (f == 1 || f == 2 ? result.averaged.missed_angle : result.averaged.missed_length) *
+                      std::sqrt((2 * double(l) + 1) / (4 * std::numbers::pi));
   result.unsettled = unknown_share(result.level_set.unsettled_angle + result.averaged.unsettled_angle, box,
                                    brillouin_radius(mesh.vertices, mesh.faces, options.origin), options.lmax);
   result.failure =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/flow.hpp"
+#include "host/flow/cell_means.hpp"
 #include "host/flow/level_set.hpp"
 #include "host/flow/sheets.hpp"
 #include "host/flow/star_shape.hpp"
@@ -27,7 +28,7 @@ SphereMap paper_flow_map(const RawMesh& mesh, const Vec3& origin, Backend& backe
 
 /// Where the level set's map jumps and how slowly its coefficients fall because of that (host/flow/sutures.hpp).
 struct LevelSetSutures {
-  SutureReport jumps;               ///< on the finest grid
+  SutureReport jumps;               ///< on the finest grid; none of a radial function, which is continuous
   double threshold = 0;             ///< of them: 0.04 of the bounding box's diagonal
   int slope_from = 0, slope_to = 0; ///< degrees; 0 where lmax is below 32: no slopes
   /// By field (surface_field_names): of log(S_l / (2 l + 1)) over log l; NaN where a degree has no power.
@@ -46,7 +47,8 @@ struct LevelSetExpansion {
   /// [degree][field]: the largest over m of what a coefficient is off by. 1.4 times the largest difference from two
   /// turned grids of half the degree, or a third of what one of them differs by from a grid of a quarter, among the fields of
   /// one kind (lengths, angles) and the two degrees on either side; and
-  /// what rounding does, what the bounds of the star-shape time leave open where the time is that, and `unsettled`. The means
+  /// what rounding does, what spikes leave open that the grid does not resolve (CellMeansReport), what the bounds of the
+  /// star-shape time leave open where the time is that, and `unsettled`. The means
   /// of the angles, as coefficients, are among degree 0.
   std::vector<std::array<double, 6>> uncertainty;
   /// Likewise what directions leave open that did not settle on the level set, were they anywhere on the surface.
@@ -54,7 +56,7 @@ struct LevelSetExpansion {
   /// A sentence if that is more than the grid leaves and than four digits show: the coefficients are then not to be used.
   std::string failure;
   LevelSetSutures sutures;
-  JumpReport averaged;            ///< on the finest grid
+  CellMeansReport averaged;       ///< on the finest grid
   std::vector<std::string> notes; ///< sentences for the user
 };
 

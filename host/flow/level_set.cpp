@@ -2,13 +2,11 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
-#include "host/spectrum/surface_fields.hpp"
 #include "host/sphere_directions.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +15,6 @@ namespace {
 
 constexpr std::size_t batch = 1 << 18;
 constexpr int most_passes = 200, careful_passes = 12, patient_passes = 30;
-constexpr double jump_angle = 0.05, jump_length = 0.02; // radians, diagonals
 
 /// One direction's search. Signed distance less the level, g, is below 0 at `low` and not below 0 at `high`, always.
 struct Ray {
@@ -38,12 +35,12 @@ struct Met {
 
 class Search {
 public:
-  Search(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin, double level, Monitor& monitor,
-         LevelSetReport& report)
-      : field_(field), origin_(origin), level_(level), monitor_(monitor), found_(report) {
+  Search(const LevelSet& set, Monitor& monitor, LevelSetReport& report)
+      : field_(set.field), origin_(set.origin), level_(set.level), monitor_(monitor), found_(report) {
+    const Vec3 &low = set.box.min, &high = set.box.max;
     const double diagonal = (high - low).norm();
     const double size = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-    outside_ = (1 + 1e-9) * ((low - origin).cwiseAbs().cwiseMax((high - origin).cwiseAbs()).norm() + level);
+    outside_ = (1 + 1e-9) * ((low - origin_).cwiseAbs().cwiseMax((high - origin_).cwiseAbs()).norm() + level_);
     enough_ = 1e-14 * diagonal;
     rounding_ = 4e-16 * std::max(diagonal, size);
     settled_ = std::max(1e-9 * diagonal, 1e-14 * size);
@@ -166,48 +163,23 @@ private:
   double outside_ = 0, enough_ = 0, settled_ = 0, rounding_ = 0;
 };
 
-struct Angles {
-  double theta, phi;
-};
-
-Angles angles_of(const Vec3& direction) {
-  return {std::atan2(std::hypot(direction.x(), direction.y()), direction.z()),
-          std::atan2(direction.y(), direction.x())};
-}
-
-std::vector<double> turned_fields(std::span<const double> positions, const SphereGrid& grid, const Vec3& origin,
-                                  bool signed_dphi, const Eigen::Matrix3d& turn) {
-  const std::size_t n = grid.points(), length = std::size_t(grid.ring_length);
-  const SphereDirections directions(grid);
-  std::vector<double> values(6 * n);
-  for (std::size_t p = 0; p < n; ++p) {
-    const Angles at = angles_of(turn * directions(int(p / length), int(p % length)));
-    const auto of_point = surface_field_values({positions[p], positions[n + p], positions[2 * n + p]}, origin, at.theta,
-                                               at.phi, signed_dphi);
-    for (std::size_t f = 0; f < 6; ++f) values[f * n + p] = of_point[f];
-  }
-  return values;
-}
-
 } // namespace
 
-LevelSetPoints level_set_points(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
-                                double level, std::span<const Vec3> directions, Monitor& monitor,
+LevelSetPoints level_set_points(const LevelSet& set, std::span<const Vec3> directions, Monitor& monitor,
                                 LevelSetReport* report) {
-  if (!(level > 0) || !std::isfinite(level))
-    throw Error(Fault::bad_argument, fmt::format("a level set lies at a distance above 0, not {}", level));
-  if (!origin.allFinite()) throw Error(Fault::bad_argument, "the origin of a level set's map must be finite");
+  if (!(set.level > 0) || !std::isfinite(set.level))
+    throw Error(Fault::bad_argument, fmt::format("a level set lies at a distance above 0, not {}", set.level));
+  if (!set.origin.allFinite()) throw Error(Fault::bad_argument, "the origin of a level set's map must be finite");
   const auto start = Clock::now();
   LevelSetReport own;
   LevelSetReport& found = report ? *report : own;
-  LevelSetPoints ends = Search(field, low, high, origin, level, monitor, found).run(directions);
+  LevelSetPoints ends = Search(set, monitor, found).run(directions);
   found.seconds += seconds_since(start);
   return ends;
 }
 
-std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
-                                        double level, const SphereGrid& grid, Monitor& monitor, LevelSetReport* report,
-                                        const Eigen::Matrix3d& turn) {
+std::vector<double> level_set_positions(const LevelSet& set, const SphereGrid& grid, Monitor& monitor,
+                                        LevelSetReport* report, const Eigen::Matrix3d& turn) {
   LevelSetReport found;
   const std::size_t points = grid.points(), length = std::size_t(grid.ring_length);
   std::vector<double> positions(3 * points);
@@ -218,7 +190,7 @@ std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, c
     std::vector<Vec3> some;
     for (std::size_t i = ring; i < std::min(std::size_t(grid.rings), ring + rings_a_batch); ++i)
       for (std::size_t j = 0; j < length; ++j) some.emplace_back(turn * directions(int(i), int(j)));
-    const LevelSetPoints ends = level_set_points(field, low, high, origin, level, some, monitor, &found);
+    const LevelSetPoints ends = level_set_points(set, some, monitor, &found);
     for (std::size_t k = 0; k < some.size(); ++k)
       for (std::size_t c = 0; c < 3; ++c) positions[c * points + ring * length + k] = ends.points[k][Eigen::Index(c)];
     for (const std::uint32_t k : ends.unsettled)
@@ -227,77 +199,6 @@ std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, c
   monitor.progress("meeting the level set", 1);
   if (report) *report = found;
   return positions;
-}
-
-std::vector<double> averaged_fields(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
-                                    double level, const SphereGrid& grid, std::span<const double> positions,
-                                    bool signed_dphi, int parts, Monitor& monitor, JumpReport* report,
-                                    const Eigen::Matrix3d& turn) {
-  const std::size_t n = grid.points(), length = std::size_t(grid.ring_length), rings = std::size_t(grid.rings);
-  if (positions.size() != 3 * n || parts < 1)
-    throw Error(Fault::bad_argument,
-                fmt::format("means of {} x {} parts from {} numbers on {} points", parts, parts, positions.size(), n));
-  std::vector<double> values =
-      turn.isIdentity(0)
-          ? surface_fields(std::vector<double>(positions.begin(), positions.end()), grid, origin, signed_dphi)
-          : turned_fields(positions, grid, origin, signed_dphi, turn);
-  // Thresholds well above what the fields move by from point to point elsewhere.
-  const double angle = jump_angle, moved = jump_length * (high - low).norm();
-  std::vector<bool> jumps(n);
-  const auto compare = [&](std::size_t a, std::size_t b) {
-    for (std::size_t f = 0; f < 6; ++f)
-      if (std::abs(values[f * n + a] - values[f * n + b]) > (f == 1 || f == 2 ? angle : moved)) {
-        jumps[a] = jumps[b] = true;
-        return;
-      }
-  };
-  for (std::size_t p = 0; p < n; ++p) {
-    const std::size_t ring = p / length;
-    compare(p, ring * length + (p + 1) % length);
-    if (ring + 1 < rings) compare(p, p + length);
-  }
-  JumpReport found;
-  std::vector<double> edges = {1}; // cosines
-  for (const double weight : grid.weights) edges.push_back(edges.back() - weight);
-  edges.back() = -1;
-  std::vector<std::size_t> cells;
-  for (std::size_t p = 0; p < n; ++p)
-    if (jumps[p]) cells.push_back(p);
-  const std::size_t k = std::size_t(parts), each = k * k, cells_a_batch = std::max<std::size_t>(1, batch / each);
-  const double step = 2 * std::numbers::pi / double(length);
-  for (std::size_t begin = 0; begin < cells.size(); begin += cells_a_batch) {
-    monitor.progress("averaging over jumps", double(begin) / double(cells.size()));
-    const std::size_t end = std::min(cells.size(), begin + cells_a_batch);
-    std::vector<Angles> where;
-    std::vector<Vec3> directions;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t ring = cells[i] / length;
-      for (std::size_t part = 0; part < each; ++part) {
-        const double across = (double(part / k) + 0.5) / double(k), along = (double(part % k) + 0.5) / double(k) - 0.5;
-        const double z = std::clamp(edges[ring] + across * (edges[ring + 1] - edges[ring]), -1.0, 1.0);
-        const double theta = std::acos(z), phi = grid.phi(int(cells[i] % length)) + along * step;
-        directions.emplace_back(turn * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), z));
-        where.push_back(turn.isIdentity(0) ? Angles{theta, phi} : angles_of(directions.back()));
-      }
-    }
-    LevelSetReport of_parts;
-    const LevelSetPoints ends = level_set_points(field, low, high, origin, level, directions, monitor, &of_parts);
-    for (const std::uint32_t part : ends.unsettled)
-      found.unsettled_angle += grid.weights[cells[begin + part / each] / length] * step / double(each);
-    for (std::size_t i = begin; i < end; ++i) {
-      std::array<double, 6> sum{};
-      for (std::size_t part = 0; part < each; ++part) {
-        const std::size_t at = (i - begin) * each + part;
-        const auto of_part = surface_field_values(ends.points[at], origin, where[at].theta, where[at].phi, signed_dphi);
-        for (std::size_t f = 0; f < 6; ++f) sum[f] += of_part[f] / double(each);
-      }
-      for (std::size_t f = 0; f < 6; ++f) values[f * n + cells[i]] = sum[f];
-    }
-  }
-  found.cells = cells.size();
-  found.points = n;
-  if (report) *report = found;
-  return values;
 }
 
 } // namespace cowgpu

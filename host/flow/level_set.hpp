@@ -2,12 +2,21 @@
 #pragma once
 
 #include "host/backend.hpp"
+#include "host/mesh/geometry.hpp"
 #include "host/sphere_grid.hpp"
 
 #include <span>
 #include <vector>
 
 namespace cowgpu {
+
+/// The surface where the signed distance d from a closed surface is `level`, seen from `origin`.
+struct LevelSet {
+  DistanceField& field; ///< of the surface
+  Box box;              ///< of the surface
+  Vec3 origin;
+  double level; ///< T > 0
+};
 
 /// How a level set was met.
 struct LevelSetReport {
@@ -23,19 +32,17 @@ struct LevelSetReport {
   double seconds = 0;
 };
 
-/// For every point of the grid the point on the ray from `origin` in its direction with d = T, d the signed distance, and of
-/// it the closest point of the surface: x, y, z of F, [3][ring][longitude]. With the inflated body {d <= T} star-shaped about
-/// the origin (host/flow/star_shape.hpp) there is one such point; else this is one of several.
+/// For every point of the grid the point on the ray from the origin in its direction with d = T, and of it the closest point
+/// of the surface: x, y, z of F, [3][ring][longitude]. With the inflated body {d <= T} star-shaped about the origin
+/// (host/flow/star_shape.hpp) there is one such point; else this is one of several.
 ///
 /// The rays are those of the grid turned by `turn`, a rotation. By Newton's method in a bracket whose lower end has been seen
 /// inside the level set and whose upper end outside: the sign of d decides, by the winding number, except where the surface is
-/// nearer than T. A bracket that three steps do not halve is cut in its middle, so that every direction ends. `field` is the
-/// surface's, closed, box [low, high].
+/// nearer than T. A bracket that three steps do not halve is cut in its middle, so that every direction ends.
 ///
 /// Throws Error(bad_argument) for T <= 0, an origin that is not finite or not inside the level set, and what DistanceField
 /// throws.
-std::vector<double> level_set_positions(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
-                                        double level, const SphereGrid& grid, Monitor& monitor,
+std::vector<double> level_set_positions(const LevelSet& set, const SphereGrid& grid, Monitor& monitor,
                                         LevelSetReport* report = nullptr,
                                         const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity());
 
@@ -46,21 +53,7 @@ struct LevelSetPoints {
 };
 
 /// As level_set_positions(); counts are added to the report's.
-LevelSetPoints level_set_points(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
-                                double level, std::span<const Vec3> directions, Monitor& monitor,
+LevelSetPoints level_set_points(const LevelSet& set, std::span<const Vec3> directions, Monitor& monitor,
                                 LevelSetReport* report = nullptr);
-
-/// The six fields over the level set's map (host/spectrum/surface_fields.hpp), [field][ring][longitude], without the grid's
-/// error at jumps: where a field differs from a neighbour's by more than the threshold, its value is the mean over
-/// `parts` x `parts` directions of equal solid angle that fill the point's cell, of solid angle weight_i 2 pi / ring_length. The
-/// cells' edges in colatitude are where the weights add up to 1 - cos theta. Angles are those of the turned directions.
-struct JumpReport {
-  std::uint64_t cells = 0, points = 0; ///< averaged; of the grid
-  double unsettled_angle = 0;          ///< of the averaged cells' directions, as in LevelSetReport
-};
-std::vector<double> averaged_fields(DistanceField& field, const Vec3& low, const Vec3& high, const Vec3& origin,
-                                    double level, const SphereGrid& grid, std::span<const double> positions,
-                                    bool signed_dphi, int parts, Monitor& monitor, JumpReport* report = nullptr,
-                                    const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity());
 
 } // namespace cowgpu

@@ -3,9 +3,10 @@
 // Rounding. Every triangle's share t in a degree is rounded on its own, so that errors add like the squares' root. With
 // u = 2^-53, N triangles, |.| the norm over all orders of a degree, and
 //
-//   A_l = sqrt(sum over triangles of |t_l|^2)
+//   A_l = sqrt(sum over triangles of |t_l|^2 + (s_l / (8 + l))^2)
 //
-// the estimate of the error of degree l >= 1 is
+// with s_l the share were nothing cancelled within the triangle (host/moment_terms.hpp; of a regular tetrahedron's faces
+// t_2 = 0), the estimate of the error of degree l >= 1 is
 //
 //   E_l = 2 u sqrt( ((8 + l + sqrt(N)/4) A_l)^2 + (6 |Q_l|)^2 ) + left_out_l
 //
