@@ -50,8 +50,9 @@ struct CoefficientSet {
   CoefficientKind kind = CoefficientKind::field;
   Form form = Form::real;
   Convention convention;
-  bool convention_stated = true;     ///< false: the file does not say; what its format's users mostly take was assumed
+  bool normalisation_stated = true;  ///< false: the file does not say; what its format's users mostly take was assumed
   bool units_stated = true;          ///< false: of a potential; the format or its users' custom was followed
+  bool phase_stated = true;          ///< as normalisation_stated
   std::vector<double> first, second; ///< C_lm and S_lm, or real and imaginary part; order as in SphereCoefficients
 
   std::vector<std::string> names;         ///< one a field, empty where there is none

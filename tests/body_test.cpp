@@ -155,3 +155,16 @@ TEST_CASE("axes are named anew without rounding", "[body]") {
     CHECK_THROWS_AS(axes_rotation(text), Error);
   }
 }
+
+TEST_CASE("the mass and the centre of parts that cancel are those of what is left of them", "[body]") {
+  // A slab of the thickness z - thinner between two boxes of one corner.
+  const double x = 0.1, y = 0.7, z = 1.3, thinner = z * (1 - 0x1p-30);
+  RawMesh outer = test::box({x, y, z}), inner = test::box({x, y, thinner});
+  std::vector<Part> parts;
+  parts.emplace_back(ClosedSurface::from(inner), -3);
+  const Body body = make_body(ClosedSurface::from(outer), {}, 3, std::move(parts));
+  const long double mass = 3 * (long double)(x)*y * ((long double)(z)-thinner);
+  CHECK(std::abs(body.mass() / mass - 1) < 4e-16L);
+  const Vec3 middle(x / 2, y / 2, (z + thinner) / 2);
+  CHECK((body.centre_of_mass - middle).norm() < 4e-16);
+}

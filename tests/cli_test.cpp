@@ -5,6 +5,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -319,6 +320,38 @@ TEST_CASE("a check out of bounds is exit code 1 and the result is still printed"
   CHECK(run.exit_code == 1);
   CHECK_THAT(run.out, Contains("FAILED"));
   CHECK_THAT(run.err, Contains("[check-failed]"));
+}
+
+TEST_CASE("an error in a degree that is exactly zero is stated as such, not as infinite", "[cli][estimate]") {
+  const ProgramRun run = run_program({"expand", "builtin:box:1,1,1", "--lmax", "1", "--device", "cpu"});
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(run.out, Contains(" in degree 1, exactly zero by second recursion, ") && !Contains("inf"));
+}
+
+TEST_CASE("validate states the estimated error as expand does, what a coarse cut-off leaves out included",
+          "[cli][estimate]") {
+  const auto lines = [](const std::vector<std::string>& command, const std::string& opening) {
+    const ProgramRun run = run_program(command);
+    std::istringstream text(run.out);
+    std::vector<std::string> found;
+    for (std::string line; std::getline(text, line);)
+      if (line.starts_with(opening) && line.find("degree") < opening.size() + 1)
+        found.push_back(line.substr(opening.size()));
+    INFO(run.out << run.err);
+    REQUIRE_FALSE(found.empty());
+    return found;
+  };
+  for (const char* cut_off : {"1e-17", "1e-6"}) {
+    const auto stated =
+        lines({"validate", "builtin:cow@1", "--lmax", "64", "--cut-off", cut_off, "--device", "cpu"}, "estimate: ");
+    auto expanded = lines({"expand", "builtin:cow@1", "--lmax", "64", "--cut-off", cut_off, "--device", "cpu",
+                           "--verify", "full", "--origin", "com"},
+                          "accuracy: ");
+    expanded.erase(std::remove_if(expanded.begin(), expanded.end(),
+                                  [](const std::string& line) { return line.starts_with("degrees 0 and 2 against"); }),
+                   expanded.end());
+    CHECK(stated == expanded);
+  }
 }
 
 TEST_CASE("inspect tells what a mesh is fit for", "[cli]") {

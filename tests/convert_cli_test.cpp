@@ -102,7 +102,8 @@ TEST_CASE("what a file cannot hold is a usage error that says which can", "[conv
   CHECK_THAT(convert("c.csv", {"--field", "x"}), Contains("there are mass"));
   CHECK_THAT(convert("c.csv", {"--lmax", "21"}), Contains("degree 20"));
   CHECK_THAT(convert("c.csv", {"--rotate", "1,2"}), Contains("ALPHA,BETA,GAMMA"));
-  CHECK_THAT(convert("c.csv", {"--input-phase", "cs"}), Contains("says orthonormal and cs"));
+  CHECK_THAT(convert("c.csv", {"--input-phase", "none"}),
+             Contains("--input-phase none: ") && Contains("says cs itself"));
   CHECK_THAT(convert("c.json", {}), Contains("input and output at once"));
   for (const char* bad : {"x.gfc", "x.sh", "x.csv", "x.nc", "x.json"}) {
     write_text(folder / bad, "OFF\n0 0 0\n");
@@ -189,4 +190,43 @@ TEST_CASE("degrees are left out, SI units stated, and a .sh file's convention gi
   const CoefficientSet given = read_coefficient_set(folder / "g.csv");
   CHECK(given.convention == Convention{Normalisation::schmidt, Phase::condon_shortley});
   CHECK(given.second[given.index(0, 1, 1)] == 4);
+}
+
+TEST_CASE("what a file says of its convention counts: an option may say what it leaves open, or repeat it",
+          "[convert-cli][gravity-table]") {
+  const TemporaryFolder folder;
+  const std::string rows = "2 0 -4.84e-4 0\n2 1 -2e-10 1.4e-9\n2 2 2.4e-6 -1.4e-6\n";
+  write_text(folder / "t.tab", "1738.0 4902.8 0 2 2 1 0 0\n" + rows);
+  const auto convert = [&](const char* in, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"convert", folder / in, folder / "o.csv", "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  for (const char* other : {"unnormalised", "schmidt", "orthonormal"})
+    CHECK_THAT(refused(convert("t.tab", {"--input-normalisation", other})),
+               Contains(fmt::format("--input-normalisation {}: ", other)) && Contains("says 4pi itself"));
+  CHECK_FALSE(std::filesystem::exists(folder / "o.csv"));
+  const ProgramRun phase = run_program(convert("t.tab", {"--input-normalisation", "4pi", "--input-phase", "cs"}));
+  CHECK(phase.exit_code == 0);
+  CHECK(read_coefficient_set(folder / "o.csv").convention ==
+        Convention{Normalisation::four_pi, Phase::condon_shortley});
+  CHECK_THAT(phase.out, Contains("taken as 4pi, as the file says, and with the Condon-Shortley phase, as the option") &&
+                            !Contains("was assumed") && Contains("from: potential to degree 2, real, 4pi, with"));
+  // A model without the line `norm` takes the option, one with it does not.
+  std::string model = "product_type gravity_field\nearth_gravity_constant 4902.8e9\nradius 1738e3\nmax_degree 2\n"
+                      "norm fully_normalized\nend_of_head\n"
+                      "gfc 0 0 1 0\ngfc 2 0 -4.84e-4 0\ngfc 2 1 -2e-10 1.4e-9\ngfc 2 2 2.4e-6 -1.4e-6\n";
+  write_text(folder / "m.gfc", model);
+  CHECK_THAT(refused(convert("m.gfc", {"--input-normalisation", "unnormalised"})), Contains("says 4pi itself"));
+  write_text(folder / "m.gfc", replaced(model, "norm fully_normalized\n", ""));
+  const ProgramRun norm = run_program(convert("m.gfc", {"--input-normalisation", "unnormalised"}));
+  CHECK(norm.exit_code == 0);
+  CHECK(read_coefficient_set(folder / "o.csv").convention == Convention{Normalisation::unnormalised, Phase::none});
+  CHECK_THAT(norm.out, Contains("taken as unnormalised, as the option says") && !Contains("was assumed"));
+  CHECK_THAT(refused(convert("m.gfc", {"--input-phase", "cs"})), Contains("says none itself"));
+  // Half of it said: the other half is still assumed, and the note says which.
+  write_text(folder / "f.sh", "0 0 1\n1 0 2\n1 1 3 4\n");
+  const ProgramRun half = run_program(convert("f.sh", {"--input-normalisation", "schmidt"}));
+  CHECK_THAT(half.out, Contains("taken as schmidt, as the option says, and without the Condon-Shortley phase, as was "
+                                "assumed"));
 }

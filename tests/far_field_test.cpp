@@ -105,6 +105,7 @@ TEST_CASE("the exact field of a box is right to the accuracy that it states, fro
   int closed = 0, series = 0;
   double worst = 0, worst_of_second = 0;
   std::vector<double> distances;
+  distances.push_back((corner + sides).norm()); // as far as the corners
   for (double d = 2; d < 300; d *= 1.7) distances.push_back(d);
   for (double d = 1e3; d < 1e61; d *= 1e6) distances.push_back(d);
   for (const double d : distances)

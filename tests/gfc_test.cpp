@@ -186,6 +186,9 @@ TEST_CASE("rows that a gravity model leaves out are 0, and a note counts them; o
   // Without its last row there is none of degree 3.
   CHECK_THAT(fault_of([&] { parse_gfc(bytes.substr(0, bytes.find("gfc    3")), "m.gfc"); }),
              StartsWith("file-truncated: m.gfc:") && Contains("its largest degree is 3"));
+  // Nor where it says more degrees than it has.
+  CHECK_THAT(fault_of([&] { parse_gfc(replaced(bytes, "3\n", "6\n"), "m.gfc"); }),
+             StartsWith("file-truncated: m.gfc:"));
   // The rows of a file of ours are all there.
   CHECK_THAT(fault_of([&] { parse_gfc("# cowgpu 1\n" + bytes, "m.gfc"); }), StartsWith("file-truncated: "));
 }

@@ -71,6 +71,12 @@ TEST_CASE("glTF nodes place their meshes, one in another", "[gltf][readers]") {
   const RawMesh by_matrix =
       parse_gltf(tetrahedron_of(R"("nodes":[{"mesh":0,"matrix":[0,1,0,0,-2,0,0,0,0,0,4,0,10,0,5,1]}])"), "x");
   CHECK(by_matrix.vertices == expected);
+  for (const char* other : {R"("translation":[0,0,5])", R"("rotation":[0,0,0,1])", R"("scale":[1,1,1])"}) {
+    const Outcome both = outcome(
+        tetrahedron_of(fmt::format(R"("nodes":[{{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],{}}}])", other)));
+    CHECK(both.fault == "file-syntax");
+    CHECK(both.says("has a matrix and a " + std::string(other).substr(1, 5)));
+  }
 }
 
 TEST_CASE("mirrored glTF nodes keep outward outward, also mirrored twice", "[gltf][readers]") {
@@ -204,19 +210,20 @@ TEST_CASE("glTF points and lines are left out with their number", "[gltf][reader
     REQUIRE(mesh.notes.size() == 1);
     return mesh.notes[0];
   };
-  CHECK(left_out(0) == "left out 12 faces of one or two corners: points and lines, in 1 primitive.");
-  CHECK(left_out(1).starts_with("left out 6 faces"));
-  CHECK(left_out(2).starts_with("left out 12 faces"));
-  CHECK(left_out(3).starts_with("left out 11 faces"));
+  CHECK(left_out(0) == "Left out, as they bound no volume: 12 points or faces of one corner.");
+  CHECK(left_out(1) == "Left out, as they bound no volume: 6 lines or faces of two corners.");
+  CHECK(left_out(2) == "Left out, as they bound no volume: 12 lines or faces of two corners.");
+  CHECK(left_out(3) == "Left out, as they bound no volume: 11 lines or faces of two corners.");
   const RawMesh beside =
       parse_gltf(read_file(std::string(COWGPU_CORPUS) + "/accepted/lines-and-points-beside.gltf"), "x");
   CHECK(beside.vertices.size() == 8);
-  CHECK(beside.notes ==
-        std::vector<std::string>{"left out 22 faces of one or two corners: points and lines, in 4 primitives."});
+  CHECK(beside.notes == std::vector<std::string>{
+                            "Left out, as they bound no volume: 14 lines or faces of two corners, 8 points or faces "
+                            "of one corner."});
   const Outcome nothing =
       outcome_of([] { ClosedSurface::from(parse_gltf(tetrahedron_of(one_node, R"("indices":1,"mode":1)"), "x")); });
   CHECK(nothing.fault == "mesh-empty");
-  CHECK(nothing.says("left out 6 faces"));
+  CHECK(nothing.says("6 lines or faces of two corners"));
 }
 
 TEST_CASE("a sparse glTF accessor of a billion elements and no data takes no memory", "[gltf][readers]") {

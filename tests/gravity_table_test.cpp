@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -318,4 +319,32 @@ TEST_CASE("the public gravity table of Mars gives an independent reader's potent
     CHECK(first_potential({"potential", path, "--at", at, "--device", "cpu", "--json"}) ==
           Approx(-double(model.potential(x, y, z))).epsilon(1e-13));
   }
+}
+
+TEST_CASE("tables whose orders end below their degrees are read, with zeros and a note", "[gravity-table]") {
+  const CoefficientSet set = parse("1738.0 4902.8 0 3 1 1\n2 0 -4.84e-4 0\n2 1 -2e-10 1.4e-9\n3 0 5 0\n3 1 6 7\n");
+  CHECK(set.lmax == 3);
+  CHECK(set.first[set.index(0, 3, 1)] == 6);
+  for (const auto& [l, m] : {std::pair(2, 2), {3, 2}, {3, 3}})
+    CHECK((set.first[set.index(0, l, m)] == 0 && set.second[set.index(0, l, m)] == 0));
+  CHECK_THAT(notes_of(set), Contains("orders end at 1") && !Contains("rows that"));
+  CHECK(parse("1738.0 4902.8 0 2 0\n2 0 -4.84e-4 0\n").lmax == 2);
+  // What is missing below mmax is still missing.
+  CHECK_THAT(fault("1738.0 4902.8 0 3 1\n2 0 1 0\n2 1 1 1\n3 0 5 0\n"),
+             StartsWith("file-truncated: ") && Contains("degree 3, order 1"));
+  CHECK_THAT(notes_of(parse("1738.0 4902.8 0 3 1\n2 0 1 0\n3 0 5 0\n3 1 1 0\n")), Contains("1 row that the file"));
+  CHECK_THAT(notes_of(parse("1738.0 4902.8 0 2 1\n" + rows)), Contains("orders end at 1, and rows have orders to 2"));
+}
+
+TEST_CASE("lines that end in carriage returns alone, and semicolons between numbers, are read", "[gravity-table]") {
+  std::string text = "# a model\n1738.0, 4902.8, 1e-4, 2\n" + rows;
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  check_field(parse(text));
+  CHECK(coefficient_format_in(text) == CoefficientFormat::shtools);
+  CHECK_THAT(fault(text + "2, 0, 1, 0\r"), StartsWith("file-syntax: t.tab:6: degree 2, order 0 a second time; line 3"));
+  text = "# a model\n1738.0, 4902.8, 1e-4, 2\n" + rows;
+  std::replace(text.begin(), text.end(), ',', ';');
+  check_field(parse(text));
+  CHECK(coefficient_format_in(text) == CoefficientFormat::shtools);
+  CHECK_THAT(fault("0;0;1,5;0\n1;0;0,5;0\n"), StartsWith("file-syntax: t.tab:1: semicolons and commas both part"));
 }

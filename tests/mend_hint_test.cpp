@@ -65,7 +65,8 @@ TEST_CASE("a refused mesh names the option that mends it, and it does", "[mend][
                         {loosened(with_flipped_face(body), 1e-7), "--weld 1e-6 --orient", {1e-6, true, false}},
                         {loosened(body, 2e-5), "--weld 1e-4", {1e-4, false, false}},
                         {loosened(scaled(body, Vec3::Constant(100)), 5e-5), "--weld 1e-4", {1e-4, false, false}},
-                        {together(body, flipped(translated(body, {5, 0, 0}))), "--orient", {{}, true, false}}};
+                        {together(body, flipped(translated(body, {5, 0, 0}))), "--orient", {{}, true, false}},
+                        {together(body, flipped(body)), "--largest-shell", {{}, false, true}}};
   for (const Case& c : cases) {
     const Outcome refused = outcome_of([&] { ClosedSurface::from(c.mesh); });
     INFO(refused.message);
@@ -74,7 +75,12 @@ TEST_CASE("a refused mesh names the option that mends it, and it does", "[mend][
     RawMesh mended = c.mesh;
     mend(mended, c.mending, silent_monitor());
     CHECK(outcome_of([&] { ClosedSurface::from(mended); }).fault == "none");
+    CHECK(notes_of(mended).empty()); // nothing of the volume is counted twice
   }
+  // Two bodies that overlap, one of them turned: whatever is done, a part is counted twice, and that is said.
+  const std::string hint = mend_hint(with_flipped_face(together(body, translated(body, {1, 0, 0}))));
+  CHECK(hint.find("--orient") != std::string::npos);
+  CHECK(hint.find("has the volume 12, 3 of it counted twice or subtracted") != std::string::npos);
 }
 
 TEST_CASE("what no option mends is told none", "[mend][hint]") {
@@ -118,7 +124,11 @@ TEST_CASE("a body is told which of its volume is counted twice or subtracted", "
   const auto inverted = notes_of(together(body, flipped(box({1, 1, 0.75}, {10, 0, 0}))));
   REQUIRE(inverted.size() == 1);
   CHECK(says(inverted, "1 shell lies outside of all others and looks inwards: its volume of 0.75 (14.3 %) is "
-                       "subtracted; --orient"));
+                       "subtracted; --orient gives the volume 6.75."));
+  // Once it was used --orient is not named again.
+  RawMesh used = together(body, flipped(box({1, 1, 0.75}, {10, 0, 0})));
+  used.notes = {"--orient: 0 faces of 24 flipped; 2 shells."};
+  CHECK(says(notes_of(used), "is subtracted; --largest-shell gives the volume 6."));
   const auto twice = notes_of(together(body, body));
   REQUIRE(twice.size() == 1);
   CHECK(says(twice, "6 (50 %) is counted twice"));
@@ -127,6 +137,10 @@ TEST_CASE("a body is told which of its volume is counted twice or subtracted", "
   // A shell that looks inwards in a cavity, and one that passes through the body's surface.
   CHECK(says(notes_of(together(shell_with_cavity(), flipped(box({0.1, 0.1, 0.1}, {-0.05, -0.05, -0.05})))),
              "looks inwards"));
+  const RawMesh hollow = together(box({9, 9, 9}), flipped(box({6, 6, 6}, {1, 1, 1})));
+  CHECK(says(notes_of(together(hollow, flipped(box({2, 2, 2}, {2, 2, 2})))),
+             "1 shell lies in a cavity and looks inwards: its volume of 8 (1.58 %) is subtracted; --orient gives the "
+             "volume 521."));
   CHECK(says(notes_of(together(body, flipped(box({1, 0.5, 1}, {1.5, 0.25, 1})))), "0.25 ("));
   for (const RawMesh& many : {body, two_shells()}) {
     RawMesh built_in = together(many, many);
@@ -149,16 +163,38 @@ TEST_CASE("of meshes of many faces whole shells are looked at, and what is not i
   CHECK(notes_of(together(large, flipped(box({1, 1, 1})))).size() == 1);
 }
 
-TEST_CASE("expand, tensors and potential say what the surface of the body counts twice", "[winding_notes][cli]") {
+TEST_CASE("every command that takes a body says what its surface counts twice", "[winding_notes][cli]") {
   const std::string file = (std::filesystem::temp_directory_path() / "cowgpu-winding-notes-test.off").string();
   std::ofstream(file) << off_text(together(box({2, 1, 3}), box({2, 1, 3}, {1, 0, 0})));
-  for (const auto& arguments : {std::vector<std::string>{"expand", file, "--lmax", "2", "--device", "cpu"},
-                                {"tensors", file},
-                                {"potential", file, "--at", "9,9,9", "--device", "cpu"}}) {
+  for (const auto& arguments :
+       {std::vector<std::string>{"expand", file, "--lmax", "2", "--device", "cpu"},
+        {"tensors", file},
+        {"validate", file, "--lmax", "2", "--device", "cpu"},
+        {"inflate", file, "--levels", "0.5", "--cells", "8", "--device", "cpu"},
+        {"distance", file, "--grid", "3", "--device", "cpu"},
+        {"streamlines", file, "--count", "4", "--device", "cpu"},
+        {"render", file, "--width", "8", "--height", "8", "--device", "cpu", "-o", file + ".png"},
+        {"potential", file, "--at", "9,9,9", "--device", "cpu"}}) {
     const ProgramRun run = run_program(arguments);
     INFO(arguments[0] << run.out << run.err);
     CHECK(run.exit_code == 0);
     CHECK((run.out + run.err).find("3 (25 %) is counted twice") != std::string::npos);
   }
+  std::filesystem::remove(file);
+  std::filesystem::remove(file + ".png");
+}
+
+TEST_CASE("map says what the surface of a body counts twice", "[winding_notes][cli]") {
+  // One shell that passes through itself: the corner of a box drawn out through the opposite wall.
+  const std::string file = (std::filesystem::temp_directory_path() / "cowgpu-winding-notes-map.off").string();
+  RawMesh mesh = icosphere(2);
+  const auto far = std::max_element(mesh.vertices.begin(), mesh.vertices.end(),
+                                    [](const Vec3& a, const Vec3& b) { return a.x() < b.x(); });
+  *far = Vec3(-3, 0, 0);
+  std::ofstream(file) << off_text(mesh);
+  const ProgramRun run = run_program({"map", file, "--lmax", "8"});
+  INFO(run.out << run.err);
+  CHECK(run.exit_code == 0);
+  CHECK(run.out.find("inside out, and subtracted") != std::string::npos);
   std::filesystem::remove(file);
 }

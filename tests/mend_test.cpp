@@ -146,6 +146,38 @@ TEST_CASE("mending with --orient keeps cavities inward, bodies in cavities outwa
   CHECK(volume(ClosedSurface::from(neighbours)) == Approx(2).epsilon(1e-14));
 }
 
+TEST_CASE("mending with --orient finds cavities that share walls with the body, and shells that lie at one place",
+          "[mend]") {
+  const RawMesh body = box({4, 4, 4});
+  const auto oriented_volume = [](const RawMesh& mesh, std::size_t cavities) {
+    RawMesh mixed = half_flipped(mesh, 5);
+    const Orienting done = orient(mixed, silent_monitor());
+    CHECK(done.cavities == cavities);
+    CHECK(done.complete);
+    return volume(mixed.vertices, mixed.faces);
+  };
+  // Cavities on one wall, a part of it and all of it, in an edge, in a corner, along five walls.
+  CHECK(oriented_volume(together(body, box({2, 2, 2}, {0, 1, 1})), 1) == Approx(56).epsilon(1e-14));
+  CHECK(oriented_volume(together(body, box({1, 4, 4}, {0, 0, 0})), 1) == Approx(48).epsilon(1e-14));
+  CHECK(oriented_volume(together(body, box({2, 2, 2}, {0, 0, 1})), 1) == Approx(56).epsilon(1e-14));
+  CHECK(oriented_volume(together(body, box({2, 2, 2}, {2, 2, 2})), 1) == Approx(56).epsilon(1e-14));
+  CHECK(oriented_volume(together(box({2, 4, 4}), body), 1) == Approx(32).epsilon(1e-14));
+  // Two boxes that overlap, with four of their walls in common planes, and faces that only touch elsewhere.
+  CHECK(oriented_volume(together(body, box({4, 4, 4}, {2, 0, 0})), 0) == Approx(128).epsilon(1e-14));
+  // A stone that fills its cavity, in either order; and one that fills it but for a wall.
+  const RawMesh hole = box({2, 2, 2}, {1, 1, 1});
+  CHECK(oriented_volume(together(together(body, hole), hole), 1) == Approx(64).epsilon(1e-14));
+  CHECK(oriented_volume(together(together(hole, body), hole), 1) == Approx(64).epsilon(1e-14));
+  CHECK(oriented_volume(together(together(body, hole), box({1, 2, 2}, {1, 1, 1})), 1) == Approx(60).epsilon(1e-14));
+  // A box and itself: the second lies inside the first, and a note says that they coincide.
+  CHECK(oriented_volume(together(body, flipped(body)), 1) == 0);
+  CHECK_THAT(mended(together(body, flipped(body)), oriented).notes.back(),
+             Contains("1 where an earlier one lies and taken as inside that"));
+  // Turned, so that nothing is exact but what the corners say.
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  CHECK(oriented_volume(rotated(together(body, box({2, 2, 2}, {1, 1, 1})), turn), 1) == Approx(56).epsilon(1e-13));
+}
+
 TEST_CASE("mending with --orient refuses one-sided shells and edges of more than two faces by name", "[mend]") {
   for (const std::uint32_t n : {5U, 8U}) CHECK(fault_of(moebius_strip(n), oriented) == Fault::mesh_unbalanced);
   CHECK(fault_of(refused("mesh-edge-manifold--edge-with-four-faces.off"), oriented) == Fault::mesh_edge_manifold);

@@ -108,6 +108,9 @@ TEST_CASE("a backslash joins lines in every OBJ statement, and in no comment", "
   CHECK(parse_obj(replaced(tetrahedron, "f 1 3 2", "g a\\b\nf 1 3 2"), "x").faces == faces);
   CHECK(parse_obj(replaced(tetrahedron, "f 1 3 2", "f 1\\  \n 3 \\\n\\\n 2"), "x").faces == faces);
   CHECK(parse_obj(tetrahedron + "g \\", "x").faces == faces);
+  // At the end of the file it joins nothing.
+  const std::string whole = tetrahedron.substr(0, tetrahedron.find_last_not_of(" \n") + 1);
+  for (const char* end : {"\\", " \\", "\\\n", " \\ "}) CHECK(parse_obj(whole + end, "x").faces == faces);
 }
 
 TEST_CASE("OBJ faces are counted from zero where they name vertex 0 and all are there", "[obj][readers]") {

@@ -145,7 +145,7 @@ TEST_CASE("damaged PLY files are refused with the line or the byte", "[ply]") {
       {replaced(whole, "vertex 8", "vertex 9"), "file-truncated", "24 bytes more"},
       {replaced(whole, "vertex 8", "vertex 7"), "file-syntax", "corners"},
       {replaced(whole, "face 12", "face 11"), "file-syntax", "13 bytes follow"},
-      {whole + "x", "file-syntax", "1 bytes follow"},
+      {whole + "x", "file-syntax", "1 byte follows"},
       {replaced(whole, "property double z\n", ""), "file-format", "x, y and z"},
       {replaced(whole, "double z", "double y"), "file-format", "x, y and z"},
       {replaced(whole, "double z", "int z"), "file-format", "double or float"},

@@ -222,6 +222,9 @@ TEST_CASE("the paper's factor before the moments stands beside the right one", "
 }
 
 TEST_CASE("what is no place, no order and no unit is refused by name", "[potential][cli]") {
+  for (const char* at : {"1,2", "1,2,3,4", "5", "1 2 3", "1;2;3"})
+    refused({"builtin:box:1,1,1", "--at", at}, 2, "it takes X,Y,Z, three finite numbers");
+  refused({"builtin:box:1,1,1", "--at", "no-such-points.txt"}, 5, "no-such-points.txt");
   const TemporaryFolder folder;
   const std::string broken = folder / "broken.txt", nothing = folder / "nothing.txt",
                     infinite = folder / "infinite.txt";

@@ -47,7 +47,8 @@ TEST_CASE("SHTOOLS text as pyshtools writes it is read, with and without its hea
   const CoefficientSet field = read_as_text(path, rows);
   CHECK(field.kind == CoefficientKind::field);
   CHECK(field.lmax == 1);
-  CHECK_FALSE(field.convention_stated);
+  CHECK_FALSE(field.normalisation_stated);
+  CHECK_FALSE(field.phase_stated);
   CHECK(field.convention == Convention{Normalisation::four_pi, Phase::none});
   CHECK_THAT(field.notes.at(0), Contains("pyshtools"));
   CHECK(field.units_stated);
@@ -114,7 +115,7 @@ TEST_CASE("every format reads back the doubles that were written, with what they
               CHECK(back.kind == kind);
               CHECK(back.form == form);
               CHECK(back.convention == set.convention);
-              CHECK(back.convention_stated);
+              CHECK((back.normalisation_stated && back.phase_stated));
               CHECK(back.names == set.names);
               CHECK(back.units == set.units);
               CHECK(back.reference_radius == set.reference_radius);
@@ -218,4 +219,53 @@ TEST_CASE("a .sh file opens in pyshtools: comments, then the header line of a po
       CHECK(std::stod(lines[at][2]) == set.first[set.index(0, l, m)]);
       CHECK(std::stod(lines[at][3]) == set.second[set.index(0, l, m)]);
     }
+}
+
+TEST_CASE("a file of ours whose lines on the convention were taken out is refused by name, and no other quantity",
+          "[shtools][coefficient-file]") {
+  const TemporaryFolder folder;
+  CoefficientSet set = set_of(random_coefficients(3, 1, 1), {Normalisation::four_pi, Phase::condon_shortley});
+  set.kind = CoefficientKind::potential;
+  set.reference_radius = 2;
+  set.gm = 2.5;
+  set.mass = 2.5;
+  set.gravitational_constant = 1;
+  set.length_unit = "of the mesh";
+  set.provenance.program = "cowgpu 9";
+  written_and_read(set, folder / "c.sh");
+  const std::string text = read_text(folder / "c.sh");
+  for (const char* line : {"# normalisation 4pi\n", "# phase cs\n"}) {
+    const std::string without = replaced(text, line, ""), key = std::string(line).substr(2, 5);
+    for (const char* more : {"", "# cowgpu", "# program"}) {
+      const std::string part = *more ? replaced(without, more, "# x") : without;
+      const std::string found = fault_of([&] { read_as_text("c.sh", part); });
+      INFO(line << more << ": " << found);
+      CHECK_THAT(found, StartsWith("file-syntax: c.sh:") && Contains("no line '# " + key));
+    }
+  }
+  // Without the line of the version the others still count.
+  const std::string unsigned_text = text.substr(text.find('\n') + 1);
+  const CoefficientSet same = read_as_text("c.sh", unsigned_text);
+  CHECK(same.convention == set.convention);
+  CHECK(same.gravitational_constant == 1.0);
+  CHECK(same.length_unit == "of the mesh");
+  CHECK(same.notes.empty());
+  // Another program's table that says one of them means it.
+  const CoefficientSet foreign = read_as_text("f.sh", "# normalisation schmidt\n0 0 1\n1 0 2\n1 1 3 4\n");
+  CHECK(foreign.convention == Convention{Normalisation::schmidt, Phase::none});
+  CHECK(foreign.normalisation_stated);
+  CHECK_FALSE(foreign.phase_stated);
+  CHECK_THAT(fault_of([&] { read_as_text("f.sh", "# normalisation schmidt\n2.0 1 0 1 1 1\n1 0 2 0\n1 1 3 4\n"); }),
+             StartsWith("file-syntax: f.sh:2: the sixth value") && Contains("line 1 says"));
+  // The same of our CSV, complex as convert writes it.
+  set.form = Form::complex;
+  set.kind = CoefficientKind::multipoles;
+  written_and_read(set, folder / "c.csv");
+  const std::string csv = read_text(folder / "c.csv");
+  for (const char* line : {"# normalisation 4pi\n", "# phase cs\n", "# kind multipoles\n"}) {
+    write_text(folder / "d.csv", replaced(csv, line, ""));
+    INFO(line);
+    CHECK_THAT(fault_of([&] { read_coefficient_set(folder / "d.csv"); }),
+               StartsWith("file-syntax: ") && Contains("is missing"));
+  }
 }

@@ -151,6 +151,25 @@ TEST_CASE("STL without endsolid is read where its last facet is whole, and says 
   CHECK(two.notes.at(0).find("'endsolid' is missing") != std::string::npos);
 }
 
+TEST_CASE("a solid of STL may be named like a facet", "[stl][readers]") {
+  const std::string body = stl_text(box({1, 2, 3}));
+  const std::vector<Vec3> expected = corners(parse_stl(body, "x"));
+  REQUIRE(expected.size() == 36);
+  const std::string from = body.find('\n') == std::string::npos ? body : body.substr(body.find('\n'));
+  const std::string facets = from.substr(0, from.rfind("endsolid"));
+  for (const char* name :
+       {"facet normal 1", "a facet normal", "facet normal 0 0 1", "facet", "facet normal facet normal"}) {
+    INFO(name);
+    CHECK(corners(parse_stl("solid " + std::string(name) + facets + "endsolid " + name + "\n", "x")) == expected);
+  }
+  // On the line of the word solid facets begin all the same.
+  CHECK(parse_stl("solid a " + facet("0 0 0", "1 0 0", "0 1 0") + "endsolid", "x").faces.size() == 1);
+  CHECK(parse_stl(
+            "solid a facet normal 0 0 1\nouter loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet endsolid",
+            "x")
+            .faces.size() == 1);
+}
+
 TEST_CASE("STL comments and colours are skipped and counted", "[stl][readers]") {
   const std::string text = replaced(stl_text(box({1, 1, 1})), "outer loop", "color 1 0 0\nouter loop # its corners");
   const RawMesh mesh = parse_stl("# who made it\n" + text, "x.stl");

@@ -148,15 +148,12 @@ Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
   ClosedSurface surface = ClosedSurface::from(std::move(mesh));
   ConsoleMonitor monitor(ProgressStyle::none);
   const auto add = [&](const std::vector<std::string>& more) { notes.insert(notes.end(), more.begin(), more.end()); };
-  add(surface.mesh().notes);
-  add(winding_notes(surface, monitor));
+  add(body_notes(surface, monitor));
   std::vector<Part> parts;
   for (const std::string& text : options.parts) parts.push_back(load_part(text, placement, options.charge));
-  for (const Part& part : parts) {
-    const RawMesh& own = part.surface.mesh();
-    for (const auto& some : {own.notes, winding_notes(part.surface, monitor)})
-      for (const std::string& note : some) notes.push_back(fmt::format("{}: {}", own.name, note));
-  }
+  for (const Part& part : parts)
+    for (const std::string& note : body_notes(part.surface, monitor))
+      notes.push_back(fmt::format("{}: {}", part.surface.mesh().name, note));
   Body body = make_body(std::move(surface), origin, density, std::move(parts));
   body.placement = placement;
   return body;

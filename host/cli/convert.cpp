@@ -54,18 +54,31 @@ EulerAngles angles_of(const Options& options) {
   return {double(angles->x() * unit), double(angles->y() * unit), double(angles->z() * unit)};
 }
 
-// Where the file does not say its convention, what the user says of it.
+// Where the file does not say its convention, what the user says of it. What it does say counts: an option may repeat it only.
 void state_convention(const Options& options, CoefficientSet& set) {
   if (options.input_normalisation.empty() && options.input_phase.empty()) return;
-  if (set.convention_stated)
-    throw Error(
-        Fault::bad_argument,
-        fmt::format("--input-normalisation and --input-phase are for files that do not say their convention; {} "
-                    "says {} and {}",
-                    options.input, name(set.convention.normalisation), name(set.convention.phase)));
-  if (!options.input_normalisation.empty())
-    set.convention.normalisation = *normalisation_named(options.input_normalisation);
-  if (!options.input_phase.empty()) set.convention.phase = *phase_named(options.input_phase);
+  const auto take = [&](const char* option, bool stated, auto given, auto& value) {
+    if (!given) return;
+    if (stated && *given != value)
+      throw Error(Fault::bad_argument,
+                  fmt::format("{0} {1}: {2} says {3} itself, and the option is for files that do not say it; leave it "
+                              "out, or say {3}",
+                              option, name(*given), options.input, name(value)));
+    value = *given;
+  };
+  const std::string assumed = assumed_convention(set);
+  take("--input-normalisation", set.normalisation_stated, normalisation_named(options.input_normalisation),
+       set.convention.normalisation);
+  take("--input-phase", set.phase_stated, phase_named(options.input_phase), set.convention.phase);
+  if (assumed.empty()) return;
+  std::erase(set.notes, assumed);
+  const auto by = [](bool stated, const std::string& option) {
+    return stated ? "as the file says" : option.empty() ? "as was assumed" : "as the option says";
+  };
+  set.notes.push_back(
+      fmt::format("IN was taken as {}, {}, and {} the Condon-Shortley phase, {}", name(set.convention.normalisation),
+                  by(set.normalisation_stated, options.input_normalisation),
+                  set.convention.phase == Phase::none ? "without" : "with", by(set.phase_stated, options.input_phase)));
 }
 
 // Lengths are metres and densities kg/m^3.
@@ -109,8 +122,8 @@ void run(const Options& options, const Common& common) {
   if (!options.rotation.empty()) angles = angles_of(options);
   AtomicFile file(options.output); // before long work: a result that cannot be written should fail now
   CoefficientSet set = read_in_unit(options.input, options.of, stated_metres(options.length_unit));
-  const std::string before = described(set);
   state_convention(options, set);
+  const std::string before = described(set);
   if (options.si) state_si(set);
   if (options.brillouin_radius) state_radius(*options.brillouin_radius, options.input, set);
   if (!options.field.empty()) set = single_field(set, options.field);
@@ -187,10 +200,10 @@ void add_convert(CLI::App& app, Common& common) {
   add_degree_option(*command, options->lmax.emplace(-1), "Leave out the degrees above L");
   command
       ->add_option("--input-normalisation", options->input_normalisation,
-                   "Normalisation of IN, where a table does not say it (default: 4pi)")
+                   "Normalisation of IN, where it does not say it (default: 4pi)")
       ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
   command
-      ->add_option("--input-phase", options->input_phase, "Phase of IN, where a table does not say it (default: none)")
+      ->add_option("--input-phase", options->input_phase, "Phase of IN, where it does not say it (default: none)")
       ->check(CLI::IsMember({"cs", "none"}));
   command->add_flag("--si", options->si,
                     "Lengths of IN are metres and its density is in kg/m^3: GM = 6.6743e-11 m^3/(kg s^2) M");

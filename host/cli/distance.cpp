@@ -7,6 +7,7 @@
 #include "host/io/point_file.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
+#include "host/mesh/winding_notes.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
 
@@ -143,11 +144,15 @@ void run(const Options& options, const Common& common) {
   auto start = Clock::now();
   Run run;
   run.mesh = load_mended(options.mesh, options.mending);
-  if (options.without_sign)
+  ConsoleMonitor monitor(common.style());
+  if (options.without_sign) {
     check_distance_surface(run.mesh.vertices, run.mesh.faces);
-  else
-    run.mesh = ClosedSurface::from(std::move(run.mesh)).mesh();
-  run.notes = run.mesh.notes;
+    run.notes = run.mesh.notes;
+  } else {
+    const ClosedSurface surface = ClosedSurface::from(std::move(run.mesh));
+    run.notes = body_notes(surface, monitor, common.threads);
+    run.mesh = surface.mesh();
+  }
   std::size_t count = 0;
   if (options.grid) {
     const Box box = bounding_box(run.mesh.vertices, run.mesh.faces);
@@ -179,7 +184,6 @@ void run(const Options& options, const Common& common) {
   if (run.lattice) run.queries = run.lattice->points();
   const auto field = backend->distance_field(run.mesh.vertices, run.mesh.faces);
   run.setup_seconds = seconds_since(start);
-  ConsoleMonitor monitor(common.style());
   const ClosestPoints points = field->closest(run.queries, {!options.without_sign}, monitor, &run.report);
   monitor.clear();
 

@@ -11,6 +11,7 @@
 #include "host/io/png.hpp"
 #include "host/io/shown.hpp"
 #include "host/mesh/audit.hpp"
+#include "host/mesh/winding_notes.hpp"
 #include "host/number.hpp"
 #include "host/report/flow_result.hpp"
 #include "host/report/json_parts.hpp"
@@ -217,14 +218,14 @@ void run(const Options& options, const Common& common) {
   if (!options.picture.empty()) picture = std::make_unique<AtomicFile>(options.picture);
 
   const Body body = make_body(ClosedSurface::from(load_mended(options.mesh, options.mending)), origin, 1);
-  std::vector<std::string> notes = body.surface.mesh().notes;
+  ConsoleMonitor monitor(common.style());
+  std::vector<std::string> notes = body_notes(body.surface, monitor, common.threads);
   std::string note;
   const auto backend = open_backend(common, &note);
   if (!note.empty()) {
     if (!common.quiet) say(fmt::format("cowgpu: {}\n", note));
     notes.push_back(note);
   }
-  ConsoleMonitor monitor(common.style());
   std::optional<StarShapeTime> star;
   double star_seconds = 0;
   if (wants_star) {

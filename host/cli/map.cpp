@@ -10,6 +10,7 @@
 #include "host/map/stretch.hpp"
 #include "host/map/stretch_repeats.hpp"
 #include "host/mesh/half_edges.hpp"
+#include "host/mesh/winding_notes.hpp"
 #include "host/number.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/map_report.hpp"
@@ -135,6 +136,7 @@ void run(const Options& options, const Common& common) {
   report.command = common.command;
   report.created = utc_now();
   report.mesh = &surface.closed().mesh();
+  report.notes = body_notes(surface.closed(), monitor, common.threads);
   auto start = Clock::now();
   const SphereMap map = options.method == "flow"
                             ? make_flow_map(options, common, surface, monitor, report.flow.emplace())

@@ -314,7 +314,7 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
   if (!input.body && !input.coefficients->origin)
     found.notes.push_back("the file does not say its origin: places are counted from it");
   add_exact_notes(options, s, found);
-  if (const double rest = std::pow(s.nearest, -(s.lmax + 1)); s.radius_known && rest > 1e-4)
+  if (const double rest = std::pow(s.nearest, -(s.lmax + 1)); s.radius_known && rest > 1e-12) // as many digits are shown
     found.notes.push_back(
         fmt::format("the nearest point of the series is {:.6g} radii away: to degree {} its terms have fallen "
                     "to {:.2g} there at most; {} is nearer to the truth",

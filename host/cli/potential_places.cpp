@@ -116,7 +116,9 @@ Places read_places(const PlaceOptions& options, const PlaceFrame& frame) {
     places.name = options.at;
   } else {
     std::error_code none;
-    if (std::count(options.at.begin(), options.at.end(), ',') == 2 && !std::filesystem::exists(options.at, none))
+    const bool numbers = options.at.find_first_not_of("0123456789+-.eE,; ") == std::string::npos;
+    if ((numbers || std::count(options.at.begin(), options.at.end(), ',') == 2) && options.at != "-" &&
+        !std::filesystem::exists(options.at, none))
       throw Error(Fault::bad_argument,
                   fmt::format("--at {}: it takes X,Y,Z, three finite numbers in the body's coordinates, or a file of "
                               "points",

@@ -11,6 +11,7 @@
 #include "host/io/surface_file.hpp"
 #include "host/mesh/topology.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/mesh/winding_notes.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
@@ -33,6 +34,16 @@ struct Options {
   bool flat = false;
 };
 
+// Notes of a closed surface; of one that is not, those of its reading: it is shown as it is.
+std::vector<std::string> notes_on(const RawMesh& mesh, Monitor& monitor, unsigned threads) {
+  try {
+    return body_notes(ClosedSurface::from(mesh), monitor, threads);
+  } catch (const Error& error) {
+    if (error.fault() == Fault::interrupted) throw;
+    return mesh.notes;
+  }
+}
+
 TriangleSurface shown_mesh(const RawMesh& mesh) {
   require_valid_indices(mesh);
   TriangleSurface surface;
@@ -42,15 +53,18 @@ TriangleSurface shown_mesh(const RawMesh& mesh) {
 }
 
 // The bodies to show, one after the other; `orders` as typed.
-std::vector<TriangleSurface> bodies(const Options& options, std::vector<int> orders, Backend& backend,
-                                    Monitor& monitor) {
+std::vector<TriangleSurface> bodies(const Options& options, std::vector<int> orders, Backend& backend, Monitor& monitor,
+                                    unsigned threads, std::vector<std::string>& notes) {
   std::vector<TriangleSurface> found;
   if (orders.empty() && !is_result_file(options.source.input)) {
-    found.push_back(shown_mesh(load_mesh(options.source.input)));
+    const RawMesh mesh = load_mesh(options.source.input);
+    notes = notes_on(mesh, monitor, threads);
+    found.push_back(shown_mesh(mesh));
     return found;
   }
   const int largest = orders.empty() ? 0 : std::max(*std::max_element(orders.begin(), orders.end()), 0);
   const SurfaceSource source = load_surface(options.source, largest, backend, monitor);
+  notes = source.notes;
   if (orders.empty()) orders = {source.expansion.coefficients.lmax};
   for (const int order : orders) {
     if (order == whole_mesh && !source.body)
@@ -94,7 +108,8 @@ void run(const Options& given, const Common& common) {
   auto backend = open_backend(common, nullptr);
   if (auto cpu = faster_drawing(*backend, common)) backend = std::move(cpu);
   ConsoleMonitor monitor(common.style());
-  std::vector<TriangleSurface> shown = bodies(options, orders, *backend, monitor);
+  std::vector<std::string> notes;
+  std::vector<TriangleSurface> shown = bodies(options, orders, *backend, monitor, common.threads, notes);
   std::size_t triangles = 0;
   for (TriangleSurface& body : shown) {
     triangles += body.faces.size();
@@ -112,6 +127,8 @@ void run(const Options& given, const Common& common) {
   write_png(image, file);
   check_stop(monitor);
   file.commit();
+  for (const std::string& note : notes)
+    if (!common.quiet) say(fmt::format("cowgpu: note: {}\n", note));
   if (!common.quiet)
     say(fmt::format("cowgpu: wrote {}: {} x {} pixels, {} triangles, rendered in {:.2f} s on {}\n", options.output,
                     image.width, image.height, triangles, seconds,

@@ -8,6 +8,7 @@
 #include "host/io/streamline_file.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
+#include "host/mesh/winding_notes.hpp"
 #include "host/report/flow_result.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
@@ -85,7 +86,8 @@ void run(const Options& options, const Common& common) {
   auto start = Clock::now();
   const ClosedSurface surface = ClosedSurface::from(load_mended(options.mesh, options.mending));
   const RawMesh& mesh = surface.mesh();
-  std::vector<std::string> notes = mesh.notes;
+  ConsoleMonitor monitor(common.style());
+  std::vector<std::string> notes = body_notes(surface, monitor, common.threads);
   table.mesh = mesh.name;
   table.sha256 = mesh.sha256;
   const Box box = bounding_box(surface);
@@ -110,7 +112,6 @@ void run(const Options& options, const Common& common) {
   FlowOptions how;
   how.time = table.time;
   how.tolerance = options.tolerance;
-  ConsoleMonitor monitor(common.style());
   table.found = streamlines(mesh.vertices, mesh.faces, table.starts, table.origin, how, *flow, *backend, monitor);
   monitor.clear();
   const double flow_seconds = seconds_since(start);

@@ -5,6 +5,7 @@
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/surface_file.hpp"
+#include "host/mesh/winding_notes.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +33,7 @@ ExpansionChoice expansion_choice(const SurfaceChoice& choice, int largest_order)
   return maps;
 }
 
-SurfaceSource from_file(const SurfaceChoice& choice) {
+SurfaceSource from_file(const SurfaceChoice& choice, Monitor& monitor) {
   SurfaceFile file = read_surface(choice.input, choice.of);
   SurfaceSource source;
   source.name = file.name;
@@ -45,7 +46,7 @@ SurfaceSource from_file(const SurfaceChoice& choice) {
   if (choice.mesh.empty()) return source;
   source.body = body_of(choice.mesh, file.placement);
   const RawMesh& mesh = source.body->surface.mesh();
-  source.notes = mesh.notes;
+  source.notes = body_notes(source.body->surface, monitor);
   if (mesh.sha256 != source.mesh_hash)
     source.notes.push_back(fmt::format("{} has another SHA-256 than the mesh that was expanded", mesh.name));
   return source;
@@ -58,7 +59,7 @@ SurfaceSource from_mesh(const SurfaceChoice& choice, int largest_order, Backend&
   const RawMesh& mesh = source.body->surface.mesh();
   source.mesh = mesh.name;
   source.mesh_hash = mesh.sha256;
-  source.notes = mesh.notes;
+  source.notes = body_notes(source.body->surface, monitor);
   check_memory(surfaces_memory(maps, mesh.faces.size(), backend), backend, "lower --lmax");
   std::vector<SurfaceResult> results = expand_surfaces(maps, false, *source.body, backend, monitor);
   check_surfaces(results);
@@ -91,7 +92,7 @@ void check_surface_choice(const SurfaceChoice& choice, int largest_order) {
 SurfaceSource load_surface(const SurfaceChoice& choice, int largest_order, Backend& backend, Monitor& monitor) {
   check_surface_choice(choice, largest_order);
   const bool file = is_result_file(choice.input);
-  SurfaceSource source = file ? from_file(choice) : from_mesh(choice, largest_order, backend, monitor);
+  SurfaceSource source = file ? from_file(choice, monitor) : from_mesh(choice, largest_order, backend, monitor);
   const int lmax = source.expansion.coefficients.lmax;
   if (largest_order > lmax)
     throw Error(Fault::bad_argument, fmt::format("order {} cannot be rebuilt: {} holds degrees 0 to {}; expand to a "

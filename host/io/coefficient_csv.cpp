@@ -161,10 +161,13 @@ CoefficientSet parse_csv_coefficients(std::string_view bytes, const std::string&
   const Metadata metadata = metadata_in(table);
   CoefficientSet facts(0, fields);
   facts.form = complex.empty() ? Form::real : Form::complex;
-  if (!take_metadata(metadata, table.name, facts) && complex.empty()) {
+  const bool by_expand = !complex.empty() && !metadata.contains("kind") && !metadata.contains("form") &&
+                         !metadata.contains("coefficients_of"); // always orthonormal with phase
+  if (!take_metadata(metadata, table.name, facts) && !by_expand) {
     table.attribute("normalisation");
     table.attribute("phase");
   }
+  if (metadata.contains("coefficients_of") || (!complex.empty() && metadata.contains("form"))) table.attribute("kind");
   if ((facts.form == Form::real) != complex.empty())
     table.fail(Fault::file_syntax, table.header_line, "the line '# form' and the columns say different things");
   // Rows that lie must not make us allocate.

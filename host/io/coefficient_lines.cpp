@@ -13,14 +13,14 @@ namespace cowgpu {
 
 bool WordLines::next() {
   if (rest_.empty()) return false;
-  const auto end = rest_.find('\n');
+  const auto end = rest_.find_first_of("\n\r");
   line = rest_.substr(0, end);
   unterminated = end == std::string_view::npos;
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  if (line.ends_with('\r')) line.remove_suffix(1);
+  const bool two = !unterminated && end + 1 < rest_.size() && rest_[end] == '\r' && rest_[end + 1] == '\n';
+  rest_.remove_prefix(unterminated ? rest_.size() : end + (two ? 2 : 1));
   ++number;
   words.clear();
-  constexpr std::string_view gaps = " \t,";
+  constexpr std::string_view gaps = " \t,;";
   for (auto at = line.find_first_not_of(gaps); at != std::string_view::npos;) {
     const auto stop = line.find_first_of(gaps, at);
     words.push_back(line.substr(at, stop - at));
@@ -41,6 +41,10 @@ double WordLines::real(std::string_view word) const {
   if (has_mixed_gaps(line))
     fail(Fault::file_syntax, fmt::format("blanks and commas both part the numbers of '{}'; if a comma stands for the "
                                          "point in one of them, write a point",
+                                         shown(line, 60)));
+  if (line.find(';') != std::string_view::npos && line.find(',') != std::string_view::npos)
+    fail(Fault::file_syntax, fmt::format("semicolons and commas both part the numbers of '{}'; if a comma stands for "
+                                         "the point in one of them, write a point",
                                          shown(line, 60)));
   const auto value = number_in(word);
   if (!value) fail(Fault::file_syntax, fmt::format("a number expected; '{}' {}", shown(word), not_a_number(word)));
@@ -79,19 +83,32 @@ std::pair<int, int> degree_and_order(std::size_t at) {
   return {l, int(at - place_of(l, 0))};
 }
 
-// The first place from `next` on that no row has.
-std::size_t first_gap(const std::vector<CoefficientRow>& rows, std::size_t next) {
+// The first place from `next` on, of orders to `mmax`, that no row has.
+std::size_t first_gap(const std::vector<CoefficientRow>& rows, std::size_t next, int mmax) {
+  auto [l, m] = degree_and_order(next);
   for (const CoefficientRow& row : rows) {
     const std::size_t at = place_of(row.l, row.m);
-    if (at == next) ++next;
-    if (at > next) break;
+    if (at == place_of(l, m)) {
+      m = m < std::min(l, mmax) ? m + 1 : 0;
+      l += m == 0;
+    }
+    if (at > place_of(l, m)) break;
   }
-  return next;
+  return place_of(l, m);
+}
+
+// How many coefficients from degree 2 on have orders above `mmax`.
+std::size_t count_above(int lmax, int mmax) {
+  std::size_t count = 0;
+  for (int l = 2; l <= lmax; ++l) count += std::size_t(std::max(l - mmax, 0));
+  return count;
 }
 
 } // namespace
 
-void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordLines& lines, CoefficientSet& set) {
+void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordLines& lines, CoefficientSet& set,
+               int mmax) {
+  mmax = std::min(mmax, lmax);
   const auto before = [](const CoefficientRow& a, const CoefficientRow& b) {
     return std::pair(place_of(a.l, a.m), a.line) < std::pair(place_of(b.l, b.m), b.line);
   };
@@ -106,16 +123,21 @@ void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordL
   const std::size_t low_places = std::min<std::size_t>(count, 3);
   const auto low =
       std::size_t(std::count_if(rows.begin(), rows.end(), [](const CoefficientRow& row) { return row.l < 2; }));
-  const std::size_t missing_low = low_places - low, missing = count - rows.size() - missing_low;
+  const std::size_t missing_low = low_places - low,
+                    missing = count - rows.size() - missing_low - count_above(lmax, mmax);
   const std::size_t last = rows.empty() ? 0 : place_of(rows.back().l, rows.back().m);
   const auto cut_off = [&](std::size_t at) {
     const auto [l, m] = degree_and_order(at);
     lines.fail(Fault::file_truncated,
                fmt::format("the file ends without a row of degree {}, order {}; its largest degree is {}", l, m, lmax));
   };
-  if (complete && missing_low > 0) cut_off(first_gap(rows, 0));
+  if (complete && missing_low > 0) cut_off(first_gap(rows, 0, mmax));
+  if (mmax < lmax)
+    set.notes.push_back(fmt::format("the header says that orders end at {}: the rows of higher ones, which the file "
+                                    "leaves out, were taken as 0",
+                                    mmax));
   if (missing > 0) {
-    const std::size_t gap = first_gap(rows, place_of(2, 0));
+    const std::size_t gap = first_gap(rows, place_of(2, 0), mmax);
     if (complete || gap > last || rows.empty() || rows.back().l < lmax) cut_off(gap);
     if (count > 100000 + 1000 * rows.size())
       lines.fail(

@@ -4,6 +4,7 @@
 #include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,7 +17,8 @@ class WordLines {
 public:
   WordLines(std::string file, std::string_view text) : file_(std::move(file)), rest_(text) {}
 
-  /// The next line into `line`, its words (between blanks and commas) into `words`; false at the end.
+  /// The next line, which ends with LF, CRLF or CR, into `line`, its words (between blanks, commas and semicolons) into `words`;
+  /// false at the end.
   bool next();
   std::string_view line;
   std::vector<std::string_view> words;
@@ -48,12 +50,14 @@ struct CoefficientRow {
 };
 
 /// Coefficients of one real field from rows in any order, into `set`, whose kind is set; its lmax becomes `lmax`. Rows that the
-/// file leaves out are 0, C_00 of a potential 1, and notes say so. `complete`: the file has every row, as ours do.
+/// file leaves out are 0, C_00 of a potential 1, and notes say so. `complete`: the file has every row, as ours do. `mmax`: where the
+/// file says that its orders end below lmax, and no row has a higher one.
 ///
 /// Throws Error(file_syntax) for a row that is there twice, with its line; file_truncated for files that were cut off: rows
 /// are missing where they are all asked for, or there is none of degree `lmax`, or none is missing before the last one and it
 /// is not the last of `lmax`; too_large where so few rows would make a table of more than 1000 coefficients each. Memory: 40
 /// bytes a row, and 16 a coefficient.
-void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordLines& lines, CoefficientSet& set);
+void take_rows(std::vector<CoefficientRow>& rows, int lmax, bool complete, WordLines& lines, CoefficientSet& set,
+               int mmax = std::numeric_limits<int>::max());
 
 } // namespace cowgpu

@@ -226,6 +226,34 @@ bool take_metadata(const Metadata& metadata, const std::string& file, Coefficien
   return normalisation && phase;
 }
 
+bool words_of_this_program(const Metadata& metadata) {
+  if (metadata.contains("cowgpu")) return true;
+  const auto text = [&](const char* key) {
+    const auto found = metadata.find(key);
+    return found == metadata.end() ? std::string_view() : std::string_view(found->second.text);
+  };
+  if (text("program").starts_with("cowgpu ")) return true;
+  std::size_t count = 0;
+  for (const char* key : {"coefficients_of", "brillouin_radius", "length_unit", "mass_unit", "second_moment",
+                          "gravitational_constant", "mesh_sha256"})
+    count += metadata.contains(key);
+  count += kind_named(text("kind")).has_value();
+  count += normalisation_named(text("normalisation")).has_value();
+  count += phase_named(text("phase")).has_value();
+  return count > 1;
+}
+
+std::string assumed_convention(const CoefficientSet& set) {
+  if (!set.normalisation_stated && !set.phase_stated)
+    return "the file does not say its convention; pyshtools' default was assumed: 4pi, without the Condon-Shortley "
+           "phase";
+  if (!set.normalisation_stated) return "the file says no normalisation (the line norm of a .gfc); 4pi was assumed";
+  if (!set.phase_stated)
+    return "the file does not say whether it has the Condon-Shortley phase; none was assumed, as in gravity tables of "
+           "the PDS and by pyshtools' default";
+  return "";
+}
+
 double remark_number(const CoefficientSet& set, const std::string& file, std::string_view word, double otherwise) {
   for (const auto& [key, text] : set.remarks) {
     if (key != word) continue;

@@ -41,6 +41,13 @@ void take_comment(std::string_view line, std::size_t number, Metadata& metadata)
 /// coefficients without reference_radius.
 bool take_metadata(const Metadata& metadata, const std::string& file, CoefficientSet& set);
 
+/// Whether the words are those that this program writes, though some may have been taken out: `cowgpu`, a `program` of that name,
+/// or two or more that hardly another program writes, such as kind, coefficients_of, gravitational_constant, phase.
+bool words_of_this_program(const Metadata& metadata);
+
+/// The note on what was assumed of normalisation and phase where the file does not state them; empty where it states both.
+std::string assumed_convention(const CoefficientSet& set);
+
 /// A remark of a file that is a number, or `otherwise` where the file has no such remark. Throws Error(file_syntax) that names
 /// file and remark where its text is no finite number (read_number()).
 double remark_number(const CoefficientSet& set, const std::string& file, std::string_view word, double otherwise);

@@ -69,8 +69,8 @@ CoefficientSet read_facts(const Head& head, WordLines& lines, int& lmax) {
     set.convention = {norm == "unnormalized" ? Normalisation::unnormalised : Normalisation::four_pi, Phase::none};
   } else {
     set.convention = {Normalisation::four_pi, Phase::none};
-    if (!head.metadata.contains("cowgpu"))
-      set.notes.push_back("the head has no norm; fully_normalized (4pi) was assumed");
+    set.normalisation_stated = false;
+    set.notes.push_back(assumed_convention(set));
   }
   lines.number = end;
   const bool earth = head.values.contains("earth_gravity_constant") || !head.values.contains("gravity_constant");
@@ -82,7 +82,7 @@ CoefficientSet read_facts(const Head& head, WordLines& lines, int& lmax) {
   lmax = lines.whole(required(head, lines, "max_degree"), "max_degree", largest_file_degree);
   lines.number = end;
   set.kind = CoefficientKind::potential;
-  if (head.metadata.contains("cowgpu")) {
+  if (words_of_this_program(head.metadata)) {
     const Convention stated = set.convention;
     take_metadata(head.metadata, lines.file(), set);
     set.convention = stated;
@@ -140,13 +140,13 @@ std::vector<CoefficientRow> read_data(WordLines& lines, int lmax, CoefficientSet
 CoefficientSet parse_gfc(std::string_view bytes, const std::string& name, std::optional<double> metres) {
   WordLines lines(name, without_byte_order_mark(bytes));
   const Head head = read_head(lines);
-  const bool ours = head.metadata.contains("cowgpu");
+  const bool ours = head.metadata.contains("cowgpu"), units = words_of_this_program(head.metadata);
   int lmax = 0;
   CoefficientSet set = read_facts(head, lines, lmax);
   std::vector<CoefficientRow> rows = read_data(lines, lmax, set);
   lines.judge_end(ours, set.notes);
   take_rows(rows, lmax, ours, lines, set);
-  if (!ours) settle_length_unit(set, metres, true);
+  if (!units) settle_length_unit(set, metres, true);
   return set;
 }
 

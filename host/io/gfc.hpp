@@ -14,7 +14,8 @@ namespace cowgpu {
 /// left to comments), then lines "gfc l m C S" with errors or without, in any order, exponents with E or D; empty lines and
 /// comments (lines that begin with '#', '!' or '%', or whose first word is "cmmt" or "comment") may stand among them. Asked for
 /// are earth_gravity_constant (or gravity_constant), radius, max_degree; product_type must be gravity_field, norm
-/// fully_normalized or unnormalized, and where either is missing the first is taken, with a note. Errors and tide_system are
+/// fully_normalized or unnormalized, and where either is missing the first is taken, with a note; without norm
+/// normalisation_stated is false. Errors and tide_system are
 /// left out. Rows that are left out are told by take_rows(); a file of ours has them all.
 ///
 /// One field of kind potential, 4pi or unnormalised, without phase. Lines "# word text" before begin_of_head are taken as

@@ -1,6 +1,7 @@
 #include "host/io/gltf.hpp"
 
 #include "host/io/gltf_document.hpp"
+#include "host/io/mesh_faces.hpp"
 #include "host/io/sha256.hpp"
 #include "host/mesh/topology.hpp"
 #include "host/mesh/weld.hpp"
@@ -134,6 +135,12 @@ private:
   Placement placement_of(const Json& node, const std::string& what) const {
     Placement placement;
     if (const auto m = document_.numbers(node, "matrix", 16, what)) {
+      for (const char* other : {"rotation", "scale", "translation"})
+        if (document_.member(node, other))
+          document_.fail(Fault::file_syntax, what,
+                         fmt::format("it has a matrix and a {}; glTF allows one or the other, and which counts is not "
+                                     "known. Export the scene again, or leave one out.",
+                                     other));
       if (std::abs((*m)[3]) + std::abs((*m)[7]) + std::abs((*m)[11]) + std::abs((*m)[15] - 1) > 1e-6)
         document_.fail(Fault::file_syntax, what, "its matrix is not affine: the last row must be 0 0 0 1.");
       for (int column = 0; column < 3; ++column)
@@ -225,8 +232,7 @@ private:
     const auto primitive = primitive_of(json, what);
     if (!primitive) return;
     if (primitive->mode < triangles) {
-      short_faces_ += primitive->short_faces;
-      ++short_primitives_;
+      (primitive->mode == points ? points_ : lines_) += primitive->short_faces;
       return;
     }
     const GltfNumbers& points = primitive->points;
@@ -331,11 +337,7 @@ private:
     if (skinned_ != 0)
       document_.notes.push_back(fmt::format("{} skinned {} as it was bound, without its skeleton.", skinned_,
                                             skinned_ == 1 ? "mesh was read" : "meshes were read, each"));
-    if (short_faces_ != 0)
-      document_.notes.push_back(
-          fmt::format("left out {} of one or two corners: points and lines, in {}.",
-                      short_faces_ == 1 ? "1 face" : fmt::format("{} faces", short_faces_),
-                      short_primitives_ == 1 ? "1 primitive" : fmt::format("{} primitives", short_primitives_)));
+    if (const std::string note = left_out_note(points_, lines_); !note.empty()) document_.notes.push_back(note);
     if (joins_ != 0)
       document_.notes.push_back(fmt::format("{} without area, which {} pieces of strips, {} left out.",
                                             joins_ == 1 ? "1 triangle" : fmt::format("{} triangles", joins_),
@@ -352,7 +354,7 @@ private:
   bool closed_ = true;                  // every instance by itself
   bool targets_ = false;
   std::size_t welded_ = 0, collapsed_ = 0, mirrored_ = 0, skinned_ = 0;
-  std::uint64_t short_faces_ = 0, short_primitives_ = 0, joins_ = 0;
+  std::uint64_t points_ = 0, lines_ = 0, joins_ = 0;
 };
 
 } // namespace

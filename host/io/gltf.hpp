@@ -31,14 +31,14 @@ namespace cowgpu {
 ///
 /// Fills every field of RawMesh but `face_lines`; `sha256` is that of `bytes`. Every index is valid on return.
 ///
-/// Memory: of the mesh at most 32 MiB plus 4 times the file; instances that would take more, or more than 300,000
+/// Memory: of the mesh at most 32 MiB plus 4 times the file; instances that would take more, or more than 1,000,000
 /// primitives, are refused before they are made.
 ///
 /// Throws Error with
 /// - file_format: no glTF 2; other positions, as shorts without the extension;
 ///   required extensions (KHR_draco_mesh_compression ...), and instances by EXT_mesh_gpu_instancing; outside files;
 /// - file_syntax: broken JSON; numbers that lead out of their list, view or buffer; a node that is its own ancestor or has
-///   two parents, or lies more than 1000 deep; a transform that is not affine;
+///   two parents, or lies more than 1000 deep; a transform that is not affine, or has a matrix and its parts too;
 /// - file_truncated: a container or buffer shorter than announced;
 /// - mesh_index_range: an index beyond the positions; too_large: see above.
 RawMesh parse_gltf(std::string_view bytes, const std::string& name);

@@ -1,5 +1,6 @@
 #include "host/io/gltf_document.hpp"
 
+#include "host/counted.hpp"
 #include "host/io/shown.hpp"
 
 #include <fmt/format.h>
@@ -224,8 +225,9 @@ std::string_view GltfDocument::container(std::string_view bytes) {
   const std::size_t length = word_at(bytes, 8);
   if (bytes.size() < length) truncated();
   if (bytes.size() > length)
-    notes.push_back(
-        fmt::format("{} bytes after the GLB's end were ignored (from byte {}).", bytes.size() - length, length));
+    notes.push_back(fmt::format("{} after the GLB's end {} ignored (from byte {}).",
+                                counted(bytes.size() - length, "byte", "bytes"),
+                                bytes.size() - length == 1 ? "was" : "were", length));
   std::string_view text;
   std::size_t chunks = 0;
   for (std::size_t at = 12; at < length; ++chunks) {

@@ -1,5 +1,6 @@
 #include "host/io/mesh_faces.hpp"
 
+#include "host/counted.hpp"
 #include "host/error.hpp"
 #include "host/mesh/polygon.hpp"
 
@@ -9,10 +10,6 @@
 
 namespace cowgpu {
 namespace {
-
-std::string counted(std::uint64_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
 
 const char* were(std::uint64_t count) {
   return count == 1 ? "was" : "were";

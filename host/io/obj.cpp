@@ -1,5 +1,6 @@
 #include "host/io/obj.hpp"
 
+#include "host/counted.hpp"
 #include "host/error.hpp"
 #include "host/io/mesh_faces.hpp"
 #include "host/io/sha256.hpp"
@@ -211,9 +212,12 @@ private:
       return Error(Fault::mesh_index_range, fmt::format("{}:{}: face {} names vertex {}, {}", mesh_.name, scan_.line(),
                                                         faces_found_, number, why));
     };
-    if (*value < 0) throw refuse(fmt::format("counted backwards, but {} vertices stand above it.", above));
-    const Error error = refuse(
-        fmt::format("but there are {} vertices, numbered from {}. Export the mesh again.", vertex_count_, base_));
+    if (*value < 0)
+      throw refuse(fmt::format("counted backwards, but {} above it.",
+                               counted(std::uint64_t(above), "vertex stands", "vertices stand")));
+    const Error error =
+        refuse(fmt::format("but there {} {}, numbered from {}. Export the mesh again.",
+                           vertex_count_ == 1 ? "is" : "are", counted(vertex_count_, "vertex", "vertices"), base_));
     if (*value == 0 && base_ == 1) throw VertexZero{error};
     throw error;
   }
@@ -247,9 +251,8 @@ private:
           "The faces name vertex 0, and none the last one counted from 1: vertices were numbered from 0.");
     if (weights_ != 0)
       mesh_.notes.push_back(
-          fmt::format("{} vertices have a weight other than 1, which counts for curves only: their x, y "
-                      "and z were taken as they are.",
-                      weights_));
+          fmt::format("{} a weight other than 1, which counts for curves only: x, y and z were taken as they are.",
+                      counted(weights_, "vertex has", "vertices have")));
     if (colours_ != 0) mesh_.notes.push_back("Colours of the vertices were skipped.");
     if (unknown_lines_ != 0)
       mesh_.notes.push_back(

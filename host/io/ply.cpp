@@ -1,5 +1,6 @@
 #include "host/io/ply.hpp"
 
+#include "host/counted.hpp"
 #include "host/error.hpp"
 #include "host/io/ply_header.hpp"
 #include "host/io/shown.hpp"
@@ -122,11 +123,11 @@ private:
   void sizes() const {
     const std::uint64_t wanted = vertex_count_ * stride_ + face_count_ * face_bytes, found = bytes_.size() - at_;
     if (found < wanted)
-      fail_at(
-          Fault::file_truncated, bytes_.size(),
-          fmt::format("the file ends, but {} vertices and {} faces take {} bytes more. It was cut off or its header "
-                      "is wrong; write or fetch it again.",
-                      vertex_count_, face_count_, wanted - found));
+      fail_at(Fault::file_truncated, bytes_.size(),
+              fmt::format("the file ends, but {} and {} take {} more. It was cut off or its header is wrong; write or "
+                          "fetch it again.",
+                          counted(vertex_count_, "vertex", "vertices"), counted(face_count_, "face", "faces"),
+                          counted(wanted - found, "byte", "bytes")));
   }
 
   void vertices(PlyMesh& mesh) {
@@ -159,7 +160,8 @@ private:
       mesh.faces.push_back(face);
     }
     if (at_ != bytes_.size())
-      fail_at(Fault::file_syntax, at_, fmt::format("{} bytes follow the last face.", bytes_.size() - at_));
+      fail_at(Fault::file_syntax, at_,
+              fmt::format("{} the last face.", counted(bytes_.size() - at_, "byte follows", "bytes follow")));
   }
 
   std::string_view bytes_;

@@ -1,5 +1,6 @@
 #include "host/io/ply_reader.hpp"
 
+#include "host/counted.hpp"
 #include "host/io/mesh_faces.hpp"
 #include "host/io/ply_header.hpp"
 #include "host/io/sha256.hpp"
@@ -97,7 +98,9 @@ public:
   static std::size_t triangle_bytes(PlyType index) { return 3 * bytes_of(index); }
   static std::size_t value_bytes(PlyType type) { return bytes_of(type); }
   std::string rest() const {
-    return left() == 0 ? "" : fmt::format("{} bytes after the last element were ignored (from byte {}).", left(), at_);
+    if (left() == 0) return "";
+    return fmt::format("{} after the last element {} ignored (from byte {}).", counted(left(), "byte", "bytes"),
+                       left() == 1 ? "was" : "were", at_);
   }
 
 private:

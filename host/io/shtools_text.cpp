@@ -81,8 +81,8 @@ public:
     int lmax = std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.l < b.l; })->l;
     check_lmax(lmax, ours);
     lines_.number = end;
-    take_rows(rows, lmax, ours, lines_, set_);
-    take_facts(ours, metres);
+    take_rows(rows, lmax, ours, lines_, set_, orders_to(rows, lmax));
+    take_facts(metres);
     if (text_lines_ > 0)
       set_.notes.push_back(fmt::format("{} line{} of text {} passed over, the first is line {}: '{}'", text_lines_,
                                        text_lines_ == 1 ? "" : "s", text_lines_ == 1 ? "was" : "were", first_text_,
@@ -255,26 +255,43 @@ private:
       lines_.fail(differs(stated), fmt::format("the rows end at degree {}, and lmax is {}", lmax, stated));
   }
 
+  // The largest order, where the header says one below lmax.
+  int orders_to(const std::vector<CoefficientRow>& rows, int lmax) {
+    if (header_.size() < 5 || !(header_[4] >= 0 && header_[4] < lmax) || header_[4] != std::floor(header_[4]))
+      return lmax;
+    const int mmax = int(header_[4]);
+    const int found =
+        std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.m < b.m; })->m;
+    if (found <= mmax) return mmax;
+    set_.notes.push_back(
+        fmt::format("the header says that orders end at {}, and rows have orders to {}: all were read", mmax, found));
+    return lmax;
+  }
+
   // Convention, body and units.
-  void take_facts(bool ours, std::optional<double> metres) {
+  void take_facts(std::optional<double> metres) {
     if (!header_.empty()) {
       set_.reference_radius = header_[0];
       set_.gm = header_[1];
     }
+    const bool ours = words_of_this_program(metadata_);
     if (ours) metadata_.erase("form");
-    if (ours && header_.empty() && metadata_.contains("kind"))
+    if (ours && header_.empty() && (metadata_.contains("kind") || metadata_.contains("coefficients_of")))
       lines_.fail(Fault::file_truncated, "the file says that it is of a potential and has no line r0, gm, omega, lmax");
-    if (ours && take_metadata(metadata_, lines_.file(), set_)) return;
-    const bool normalised = header_.size() < 6 || header_[5] == 1;
-    set_.convention = {normalised ? Normalisation::four_pi : Normalisation::unnormalised, Phase::none};
-    set_.convention_stated = false;
-    if (header_.size() > 5)
-      set_.notes.push_back(fmt::format("the header says that the coefficients are {}normalised: {}, and without the "
-                                       "Condon-Shortley phase, as in gravity tables of the PDS",
-                                       normalised ? "" : "un", name(set_.convention.normalisation)));
-    else
-      set_.notes.push_back("the file does not say its convention; pyshtools' default was assumed: 4pi, without the "
-                           "Condon-Shortley phase");
+    for (const char* key : {"normalisation", "phase"})
+      if (ours && !metadata_.contains(key))
+        lines_.fail(
+            Fault::file_syntax,
+            fmt::format("by its other comments the file is one of this program, and it has no line '# {0} ...': "
+                        "what its numbers mean is not known. Put the line back ('# {0} {1}' where it was so), "
+                        "or convert the original again",
+                        key, key == std::string_view("phase") ? "none" : "4pi"));
+    if (ours) {
+      take_metadata(metadata_, lines_.file(), set_);
+      agree_with_header(metadata_["normalisation"].line);
+      return;
+    }
+    take_convention();
     if (set_.kind != CoefficientKind::potential) return;
     if (set_.first[0] == 0) {
       set_.first[0] = 1;
@@ -286,6 +303,34 @@ private:
                       header_.size() > 7 ? header_[7] : 0));
     set_.units_stated = false;
     settle_length_unit(set_, metres, false);
+  }
+
+  // Of a file of another program: what its header and its comments say, else what is usual.
+  void take_convention() {
+    const auto normalisation = normalisation_named(metadata_["normalisation"].text);
+    const auto phase = phase_named(metadata_["phase"].text);
+    const bool by_header = header_.size() > 5;
+    const Normalisation in_header = by_header && header_[5] == 0 ? Normalisation::unnormalised : Normalisation::four_pi;
+    set_.convention = {normalisation.value_or(in_header), phase.value_or(Phase::none)};
+    set_.normalisation_stated = normalisation || by_header;
+    set_.phase_stated = phase.has_value();
+    if (normalisation) agree_with_header(metadata_["normalisation"].line);
+    if (by_header)
+      set_.notes.push_back(fmt::format("the header says that the coefficients are {}normalised: {}",
+                                       header_[5] == 1 ? "" : "un", name(set_.convention.normalisation)));
+    if (const std::string assumed = assumed_convention(set_); !assumed.empty()) set_.notes.push_back(assumed);
+  }
+
+  // The sixth value of a header and a comment say the same.
+  void agree_with_header(std::size_t line) {
+    if (header_.size() < 6) return;
+    const Normalisation in_header = header_[5] == 0 ? Normalisation::unnormalised : Normalisation::four_pi;
+    if (in_header == set_.convention.normalisation) return;
+    lines_.number = header_line_;
+    lines_.fail(Fault::file_syntax,
+                fmt::format("the sixth value of the header is {}, which means {}, and line {} says that the "
+                            "normalisation is {}; one of them is wrong",
+                            header_[5], name(in_header), line, name(set_.convention.normalisation)));
   }
 
   WordLines lines_;

@@ -1,5 +1,6 @@
 #include "host/io/stl.hpp"
 
+#include "host/counted.hpp"
 #include "host/error.hpp"
 #include "host/io/sha256.hpp"
 #include "host/io/shown.hpp"
@@ -82,9 +83,9 @@ private:
     if (count == 0 && behind != 0) {
       // Programs that write facets as they come leave the number out.
       if (behind % facet_bytes != 0)
-        truncated(fmt::format("the header announces 0 facets, and {} bytes follow, which are no whole number of facets "
-                              "of {} bytes.",
-                              behind, facet_bytes));
+        truncated(fmt::format("the header announces 0 facets, and {}, which {} no whole number of facets of {} bytes.",
+                              counted(behind, "byte follows", "bytes follow"), behind == 1 ? "is" : "are",
+                              facet_bytes));
       count = found;
       mesh_.notes.push_back(
           fmt::format("The header announces 0 facets, but {} bytes follow: {} facets were read, by the file's length.",
@@ -107,8 +108,9 @@ private:
       mesh_.notes.push_back(
           fmt::format("Attribute bytes, colours usually, were skipped (facets that have any: {}).", attributes));
     if (const std::size_t end = header_bytes + count * facet_bytes; end != bytes_.size())
-      mesh_.notes.push_back(
-          fmt::format("{} bytes after the last facet were ignored (from byte {}).", bytes_.size() - end, end));
+      mesh_.notes.push_back(fmt::format("{} after the last facet {} ignored (from byte {}).",
+                                        counted(bytes_.size() - end, "byte", "bytes"),
+                                        bytes_.size() - end == 1 ? "was" : "were", end));
   }
 
   void ascii() {
@@ -130,10 +132,10 @@ private:
   [[noreturn]] void unexpected(const WordScanner& scan, std::string_view word, std::string_view expected) const {
     if (word.empty() || scan.left() == 0)
       fail(Fault::file_truncated, scan.line(),
-           fmt::format("the file ends after {} facets, before {}. It was cut off; fetch or export it again.", facets_,
-                       expected));
+           fmt::format("the file ends after {}, before {}. It was cut off; fetch or export it again.",
+                       counted(facets_, "facet", "facets"), expected));
     fail(Fault::file_syntax, scan.line(),
-         fmt::format("{} expected after {} facets, found '{}'.", expected, facets_, shown(word)));
+         fmt::format("{} expected after {}, found '{}'.", expected, counted(facets_, "facet", "facets"), shown(word)));
   }
 
   void require(const WordScanner& scan, std::string_view word, std::string_view expected) const {
@@ -186,9 +188,9 @@ private:
       facet(normal, corners, line);
     }
     if (facets_ != 0 && (word.empty() || same_word(word, "solid"))) {
-      mesh_.notes.push_back(fmt::format("Line {}: the word 'endsolid' is missing after {} facets, the last of which is "
+      mesh_.notes.push_back(fmt::format("Line {}: the word 'endsolid' is missing after {}, the last of which is "
                                         "whole. If facets are missing, fetch or export the file again.",
-                                        scan.line(), facets_));
+                                        scan.line(), counted(facets_, "facet", "facets")));
       return word;
     }
     if (!ends(scan, word, "solid")) unexpected(scan, word, "'endsolid'");
@@ -196,13 +198,21 @@ private:
     return keyword(scan);
   }
 
-  /// Skips a solid's name, to the line's end or to the words `facet normal`; then the word `facet` is returned.
+  /// Skips a solid's name, to the line's end or to the words `facet normal` of a facet; then the word `facet` is returned.
   static std::string_view skip_name(WordScanner& scan) {
-    for (std::string_view word = scan.word_on_line(); !word.empty(); word = scan.word_on_line()) {
-      WordScanner ahead = scan;
-      if (same_word(word, "facet") && same_word(ahead.word_on_line(), "normal")) return word;
-    }
+    for (std::string_view word = scan.word_on_line(); !word.empty(); word = scan.word_on_line())
+      if (same_word(word, "facet") && begins_facet(scan)) return word;
     return {};
+  }
+
+  /// Whether behind the word `facet` a facet goes on, and no name with this word: its loop follows, on this line or the next, or
+  /// the normal's next number.
+  static bool begins_facet(WordScanner ahead) {
+    if (!same_word(ahead.word_on_line(), "normal")) return false;
+    for (std::string_view word = ahead.word_on_line(); !word.empty(); word = ahead.word_on_line())
+      if (same_word(word, "outer")) return true;
+    const std::string_view below = ahead.word();
+    return same_word(below, "outer") || to_number(below);
   }
 
   /// Three numbers. What is no number is let pass in normals, where some programs write "-nan(ind)".

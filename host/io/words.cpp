@@ -55,6 +55,7 @@ std::string_view WordScanner::word_on_joined_lines() {
     skip_blanks();
     if (at_ == end_ || *at_ != '\\' || !at_line_end(at_ + 1)) break;
     skip_line();
+    if (at_ == end_) break;
     skip_line_end();
   }
   std::string_view word = take();
@@ -79,7 +80,7 @@ void WordScanner::skip_joined_lines() {
 
 bool WordScanner::at_line_end(const char* at) const {
   while (at != end_ && is_blank(*at)) ++at;
-  return at != end_ && is_line_end(*at);
+  return at == end_ || is_line_end(*at);
 }
 
 void WordScanner::skip_line() {

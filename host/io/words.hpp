@@ -28,7 +28,8 @@ public:
   /// The next word of this line; empty at the line's end.
   std::string_view word_on_line();
 
-  /// The same where a backslash before a line's end, and before blanks there, joins the next line to this one (OBJ).
+  /// The same where a backslash before a line's end, and before blanks there, joins the next line to this one (OBJ); before the end
+  /// of the text it joins nothing.
   std::string_view word_on_joined_lines();
 
   /// To the line's end.

@@ -1,10 +1,12 @@
 #include "host/mesh/body.hpp"
 
+#include "host/determinant.hpp"
 #include "host/error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +16,33 @@ namespace {
 void check_density(double density) {
   if (!std::isfinite(density) || density == 0 || std::abs(density) > 1e50 || std::abs(density) < 1e-50)
     throw Error(Fault::bad_argument, fmt::format("the density {} must be finite and between 1e-50 and 1e50", density));
+}
+
+// Masses that cancel by more are summed from the triangles, in Quad: rounded volumes would leave too few digits.
+constexpr long double lost_bits = 0x1p-6L;
+
+// Integrals of the density and of it times x - o, over body and parts.
+struct FirstMoments {
+  Quad mass = 0;
+  std::array<Quad, 3> first = {0, 0, 0};
+
+  void add(const ClosedSurface& surface, double density, const Vec3& o) {
+    const std::vector<Vec3>& vertices = surface.vertices();
+    for (const Face& face : surface.faces()) {
+      const Vec3 &a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
+      const Quad weight = Quad(density) * determinant_in<Quad>(a, b, c, o);
+      mass += weight / 6;
+      for (int i = 0; i < 3; ++i)
+        first[std::size_t(i)] += weight / 24 * ((Quad(a[i]) - o[i]) + (Quad(b[i]) - o[i]) + (Quad(c[i]) - o[i]));
+    }
+  }
+};
+
+FirstMoments first_moments(const Body& body, const Vec3& o) {
+  FirstMoments moments;
+  moments.add(body.surface, body.density, o);
+  for (const Part& part : body.parts) moments.add(part.surface, part.density, o);
+  return moments;
 }
 
 // The mean of the centres, weighed by mass, as seen from the first of them; nothing where the masses cancel.
@@ -29,6 +58,12 @@ std::optional<Vec3> common_centre(const Body& body, const Vec3& own) {
     sum += m * (part.centre_of_mass.cast<long double>() - own.cast<long double>());
   }
   if (!(std::abs(mass) > 1e-12L * weight)) return std::nullopt;
+  if (std::abs(mass) < lost_bits * weight) {
+    const FirstMoments exact = first_moments(body, own);
+    Vec3 centre;
+    for (int i = 0; i < 3; ++i) centre[i] = double(Quad(own[i]) + exact.first[std::size_t(i)] / exact.mass);
+    return centre;
+  }
   return Vec3((own.cast<long double>() + sum / mass).cast<double>());
 }
 
@@ -41,9 +76,14 @@ Part::Part(ClosedSurface s, double d) : surface(std::move(s)), density(d) {
 }
 
 double Body::mass() const {
-  long double sum = (long double)(density)*volume;
-  for (const Part& part : parts) sum += (long double)(part.density) * part.volume;
-  return double(sum);
+  long double sum = (long double)(density)*volume, sizes = std::abs(sum);
+  for (const Part& part : parts) {
+    const long double one = (long double)(part.density) * part.volume;
+    sum += one;
+    sizes += std::abs(one);
+  }
+  if (!(std::abs(sum) < lost_bits * sizes)) return double(sum);
+  return double(first_moments(*this, bounding_box(surface).middle()).mass);
 }
 
 Body make_body(ClosedSurface surface, const OriginChoice& origin, double density, std::vector<Part> parts) {

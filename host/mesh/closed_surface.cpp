@@ -1,5 +1,6 @@
 #include "host/mesh/closed_surface.hpp"
 
+#include "host/counted.hpp"
 #include "host/error.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/mend_hint.hpp"
@@ -51,9 +52,9 @@ void require_some(const RawMesh& mesh) {
   std::string notes; // notes of the reader: perhaps all faces were left out
   for (const std::string& note : mesh.notes) notes += fmt::format(" ({})", note);
   fail(Fault::mesh_empty, mesh,
-       fmt::format(
-           "the mesh has {} vertices and {} faces; there is nothing to compute. Export the surface with its faces.{}",
-           mesh.vertices.size(), mesh.faces.size(), notes));
+       fmt::format("the mesh has {} and {}; there is nothing to compute. Export the surface with its faces.{}",
+                   counted(mesh.vertices.size(), "vertex", "vertices"), counted(mesh.faces.size(), "face", "faces"),
+                   notes));
 }
 
 void require_finite(const RawMesh& mesh) {
@@ -181,8 +182,7 @@ ClosedSurface ClosedSurface::from(RawMesh mesh) {
   require_balance(mesh);
   require_volume(mesh);
   if (const std::size_t unused = unused_vertices(mesh.faces, mesh.vertices.size()); unused != 0)
-    mesh.notes.push_back(
-        fmt::format("{} to no face.", unused == 1 ? "1 vertex belongs" : fmt::format("{} vertices belong", unused)));
+    mesh.notes.push_back(fmt::format("{} to no face.", counted(unused, "vertex belongs", "vertices belong")));
   return ClosedSurface(std::move(mesh));
 }
 

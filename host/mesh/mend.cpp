@@ -1,5 +1,6 @@
 #include "host/mesh/mend.hpp"
 
+#include "host/counted.hpp"
 #include "host/error.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/self_intersections.hpp"
@@ -9,16 +10,15 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace cowgpu {
 namespace {
-
-std::string counted(std::size_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
 
 void require_two_faces_at_most(const RawMesh& mesh, std::span<const EdgeUse> uses) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
@@ -84,45 +84,138 @@ void flip_face(Face& face) {
   std::swap(face[1], face[2]);
 }
 
+/// Points of a face that lie on no line through corners of neighbours but by chance.
+std::array<Vec3, 4> generic_points(std::span<const Vec3> vertices, const Face& f) {
+  constexpr double weights[4][3] = {{0.31, 0.27, 0.42}, {0.8, 0.11, 0.09}, {0.09, 0.8, 0.11}, {0.11, 0.09, 0.8}};
+  std::array<Vec3, 4> points;
+  for (std::size_t i = 0; i < 4; ++i)
+    points[i] = weights[i][0] * vertices[f[0]] + weights[i][1] * vertices[f[1]] + weights[i][2] * vertices[f[2]];
+  return points;
+}
+
+/// Whether a point of the plane of a face lies in the face, or within rounding of it.
+bool lies_in(const Vec3& point, std::span<const Vec3> vertices, const Face& f) {
+  const std::array<Vec3, 3> corner = {vertices[f[0]], vertices[f[1]], vertices[f[2]]};
+  const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 &from = corner[i], &to = corner[(i + 1) % 3];
+    if ((to - from).cross(point - from).dot(normal) < -1e-9 * normal.squaredNorm()) return false;
+  }
+  return true;
+}
+
+/// Which shells lie inside which, of those that are closed.
+class Nesting {
+public:
+  Nesting(const RawMesh& mesh, std::span<const std::uint32_t> shell, const std::vector<bool>& closed, Monitor& monitor)
+      : mesh_(mesh), shell_(shell), closed_(closed), tree_(mesh.vertices, mesh.faces), meets_(closed.size()),
+        start_(closed.size() + 1), faces_(mesh.faces.size()), winding_(closed.size()), tally_(closed.size()) {
+    for (const std::uint32_t s : shell) ++start_[s + 1];
+    for (std::size_t s = 0; s < closed.size(); ++s) start_[s + 1] += start_[s];
+    std::vector<std::size_t> at(start_.begin(), start_.end() - 1);
+    for (std::uint32_t f = 0; f < faces_.size(); ++f) faces_[at[shell[f]]++] = f;
+    const SelfIntersections found = self_intersections(mesh.vertices, mesh.faces, tree_, monitor);
+    complete_ = found.complete;
+    for (const FacePair& pair : found.pairs) {
+      const std::uint32_t a = shell[pair.first], b = shell[pair.second];
+      if (a == b) continue;
+      meets_[a] = meets_[b] = true;
+      if (pair.how.meeting == Meeting::crossing) through_.emplace_back(std::min(a, b), std::max(a, b));
+      if (pair.how.meeting != Meeting::overlapping) continue;
+      on_.emplace_back(pair.first, pair.second);
+      on_.emplace_back(pair.second, pair.first);
+    }
+    std::sort(through_.begin(), through_.end());
+    std::sort(on_.begin(), on_.end());
+  }
+
+  bool complete() const { return complete_; }
+
+  /// Calls inside(o, coincides) for each shell that holds shell `s`, or lies where it does.
+  template <class Inside>
+  void each_around(std::uint32_t s, Inside&& inside) {
+    std::size_t asked = 0;
+    const auto ask = [&](std::uint32_t f, const Vec3& point) {
+      ++asked;
+      on_now_.clear();
+      for (auto at = std::lower_bound(on_.begin(), on_.end(), std::pair(f, 0U)); at != on_.end() && at->first == f;
+           ++at)
+        if (lies_in(point, mesh_.vertices, mesh_.faces[at->second])) on_now_.push_back(shell_[at->second]);
+      std::sort(on_now_.begin(), on_now_.end());
+      on_now_.erase(std::unique(on_now_.begin(), on_now_.end()), on_now_.end());
+      for (const std::uint32_t o : on_now_) seen(o).on += 1;
+      crossings(tree_, mesh_.vertices, mesh_.faces, point, crossed_);
+      for (const Crossing& c : crossed_) winding_[shell_[c.face]] += c.sign;
+      for (const Crossing& c : crossed_) {
+        const std::uint32_t o = shell_[c.face];
+        if (winding_[o] != 0 && !std::binary_search(on_now_.begin(), on_now_.end(), o)) seen(o).in += 1;
+        winding_[o] = 0; // counted
+      }
+    };
+    for (std::size_t i = start_[s]; i < start_[s + 1]; ++i) {
+      const std::uint32_t f = faces_[i];
+      const Face& face = mesh_.faces[f];
+      if (axis_with_area(mesh_.vertices[face[0]], mesh_.vertices[face[1]], mesh_.vertices[face[2]]) < 0) continue;
+      const auto points = generic_points(mesh_.vertices, face);
+      const auto lies = std::lower_bound(on_.begin(), on_.end(), std::pair(f, 0U));
+      const bool lies_on_others = lies != on_.end() && lies->first == f;
+      for (std::size_t p = 0; p < (lies_on_others ? points.size() : 1); ++p) ask(f, points[p]);
+      if (!meets_[s]) break; // one place says it for the whole shell
+    }
+    for (const std::uint32_t o : seen_) {
+      const Tally tally = std::exchange(tally_[o], {});
+      if (o == s || !closed_[o] ||
+          std::binary_search(through_.begin(), through_.end(), std::pair(std::min(s, o), std::max(s, o))))
+        continue;
+      if (tally.in + tally.on == asked) inside(o, tally.in == 0);
+    }
+    seen_.clear();
+  }
+
+private:
+  struct Tally {
+    std::size_t in = 0, on = 0; ///< places inside another shell, and on it
+  };
+
+  Tally& seen(std::uint32_t o) {
+    Tally& tally = tally_[o];
+    if (tally.in + tally.on == 0) seen_.push_back(o);
+    return tally;
+  }
+
+  const RawMesh& mesh_;
+  std::span<const std::uint32_t> shell_;
+  const std::vector<bool>& closed_;
+  plan::Bvh tree_;
+  std::vector<bool> meets_;
+  std::vector<std::size_t> start_;   // of each shell in faces_
+  std::vector<std::uint32_t> faces_; // by shell
+  std::vector<int> winding_;
+  std::vector<Tally> tally_;
+  std::vector<std::uint32_t> seen_, on_now_;
+  std::vector<Crossing> crossed_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> through_; // shells that pass through each other
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> on_;      // faces that lie on each other, of two shells
+  bool complete_ = true;
+};
+
 /// For each shell whether it lies inside an odd number of others. `closed` says which shells count.
 std::vector<bool> cavities(const RawMesh& mesh, std::span<const std::uint32_t> shell, const std::vector<bool>& closed,
-                           Monitor& monitor) {
-  const std::size_t count = closed.size();
-  std::vector<bool> inside(count);
-  if (count < 2) return inside;
-  const plan::Bvh tree(mesh.vertices, mesh.faces);
-  const SelfIntersections found = self_intersections(mesh.vertices, mesh.faces, tree, monitor);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> through; // shells that pass through each other
-  std::vector<bool> met(mesh.faces.size());
-  for (const FacePair& pair : found.pairs) {
-    met[pair.first] = met[pair.second] = true;
-    const std::uint32_t a = shell[pair.first], b = shell[pair.second];
-    if (a != b && pair.how.meeting != Meeting::touching) through.emplace_back(std::min(a, b), std::max(a, b));
-  }
-  std::sort(through.begin(), through.end());
-
-  // Where to ask: on a face that nothing touches, if there is one.
-  std::vector<std::uint32_t> face_of(count, 0);
-  std::vector<int> worth(count, -1);
-  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
-    if (const int value = met[f] ? 0 : 1; value > worth[shell[f]]) worth[shell[f]] = value, face_of[shell[f]] = f;
-  std::vector<Crossing> crossed;
-  std::vector<int> winding(count);
-  for (std::uint32_t s = 0; s < count; ++s) {
+                           Monitor& monitor, Orienting& result) {
+  std::vector<bool> inside(closed.size());
+  if (closed.size() < 2) return inside;
+  Nesting nesting(mesh, shell, closed, monitor);
+  result.complete = nesting.complete();
+  for (std::uint32_t s = 0; s < closed.size(); ++s) {
     if (!closed[s]) continue;
     check_stop(monitor);
-    const Face& f = mesh.faces[face_of[s]];
-    const Vec3 point = (mesh.vertices[f[0]] + mesh.vertices[f[1]] + mesh.vertices[f[2]]) / 3;
-    crossings(tree, mesh.vertices, mesh.faces, point, crossed);
-    for (const Crossing& c : crossed) winding[shell[c.face]] += c.sign;
-    for (const Crossing& c : crossed) {
-      const std::uint32_t other = shell[c.face];
-      const bool holds =
-          other != s && closed[other] && winding[other] != 0 &&
-          !std::binary_search(through.begin(), through.end(), std::pair(std::min(s, other), std::max(s, other)));
-      winding[other] = 0; // counted
-      if (holds) inside[s] = !inside[s];
-    }
+    bool again = false;
+    nesting.each_around(s, [&](std::uint32_t other, bool coincides) {
+      if (coincides && other > s) return; // of two at one place the later one counts as inside
+      inside[s] = !inside[s];
+      again = again || coincides;
+    });
+    result.coinciding += again;
   }
   return inside;
 }
@@ -146,7 +239,7 @@ Orienting orient(RawMesh& mesh, Monitor& monitor) {
   const double noise = volume_noise(mesh.vertices, mesh.faces), all = area(mesh.vertices, mesh.faces);
   std::vector<std::size_t> faces(result.shells), turned(result.shells);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) ++faces[shell[f]], turned[shell[f]] += flip[f];
-  const std::vector<bool> inside = cavities(mesh, shell, closed, monitor);
+  const std::vector<bool> inside = cavities(mesh, shell, closed, monitor, result);
   std::vector<bool> again(result.shells);
   for (std::size_t s = 0; s < result.shells; ++s) {
     if (!closed[s] || std::abs(sizes[s].volume) <= noise * (sizes[s].area / all)) {
@@ -227,6 +320,8 @@ void mend_orientation(RawMesh& mesh, Monitor& monitor) {
   if (done.cavities)
     note += fmt::format(", {} inside an odd number of others and looking inwards as {}", done.cavities,
                         done.cavities == 1 ? "a cavity" : "cavities");
+  if (done.coinciding) note += fmt::format(", {} where an earlier one lies and taken as inside that", done.coinciding);
+  if (!done.complete) note += ", which meet in too many places to be sure of what lies inside what";
   if (done.undecided)
     note += fmt::format(", {} open or without volume and left as most of the faces looked", done.undecided);
   mesh.notes.push_back(note + ".");
@@ -244,6 +339,11 @@ void mend_shells(RawMesh& mesh) {
 }
 
 } // namespace
+
+bool was_oriented(const RawMesh& mesh) {
+  return std::any_of(mesh.notes.begin(), mesh.notes.end(),
+                     [](const std::string& note) { return note.starts_with("--orient: "); });
+}
 
 void mend(RawMesh& mesh, const Mending& mending, Monitor& monitor) {
   if (!mending.any()) return;

@@ -25,11 +25,14 @@ struct Orienting {
   std::size_t cavities = 0; ///< shells that look inwards now, as they lie inside an odd number of others
   std::size_t undecided =
       0; ///< shells with open edges or without volume: made consistent, and left as most faces looked
+  std::size_t coinciding = 0; ///< shells that lie exactly where an earlier one does, and count as inside it
+  bool complete = true; ///< false: faces meet too often (most_pairs) for all to be known, and nesting may be wrong
 };
 
 /// Makes every shell (faces joined over edges) consistently oriented, walking from face to face, and then outward: its own
 /// signed volume becomes positive, or negative if it lies inside an odd number of other closed shells, as a cavity does. A
-/// shell lies inside another if that winds about a point of it and no faces of the two cross or overlap; shells that pass
+/// shell lies inside another if that winds about a point of each of its faces that does not lie on it, and no faces of the two
+/// cross: walls in common do not count. Of shells that lie at one place the later one lies inside the earlier; shells that pass
 /// through each other both look outwards. Vertices and the order of faces stay; a flipped face keeps its first corner.
 ///
 /// Indices must be valid and coordinates finite. Throws Error(mesh_edge_manifold) for edges of more than two faces and
@@ -47,6 +50,9 @@ struct ShellChoice {
 /// Keeps the shell of the largest |volume|, the first of equals, with the vertices it uses in their order. Volumes of open
 /// shells are those of the cone over their edges from the middle of the mesh's box.
 ShellChoice keep_largest_shell(RawMesh& mesh);
+
+/// Whether mend() has turned the mesh's faces, by the note that it leaves.
+bool was_oriented(const RawMesh& mesh);
 
 /// Mends and says in mesh.notes what was done. The result is as raw as before: ClosedSurface::from() judges it. Throws
 /// Error(mesh_index_range, mesh_not_finite), what orient() throws, and bad_argument for a `weld` that is not finite, below 0 or above

@@ -1,6 +1,8 @@
 #include "host/mesh/mend_hint.hpp"
 
+#include "host/counted.hpp"
 #include "host/error.hpp"
+#include "host/mesh/cures.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/mend.hpp"
 #include "host/mesh/topology.hpp"
@@ -38,25 +40,41 @@ std::optional<std::size_t> turned(RawMesh& mesh) {
   }
 }
 
-std::string sentence(const std::string& options, const RawMesh& mended, const std::string& done) {
-  return fmt::format(
-      " With {0} it is closed and oriented and has the volume {1:.6g} ({2}); `cowgpu inspect MESH {0} -o "
-      "FILE.ply` writes that.",
-      options, volume(mended.vertices, mended.faces), done);
-}
+/// What an option does, and the volume of the result that is counted twice or subtracted, where it is known.
+struct Cure {
+  std::string sentence;
+  double amiss = 0;
+};
 
-std::string counted(std::size_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
+Cure cure(const std::string& options, const RawMesh& mended, const std::string& done) {
+  const double amiss = volume_amiss(mended, silent_monitor()).value_or(0);
+  return {
+      fmt::format(" With {0} it is closed and oriented and has the volume {1:.6g}{3} ({2}); `cowgpu inspect MESH {0} "
+                  "-o FILE.ply` writes that.",
+                  options, volume(mended.vertices, mended.faces), done,
+                  amiss > 0 ? fmt::format(", {:.6g} of it counted twice or subtracted", amiss) : ""),
+      amiss};
 }
 
 /// The mesh as it is, or welded.
-std::string hint_by_turning(RawMesh mesh, const std::string& options, const std::string& done) {
-  if (!options.empty() && holds_volume(mesh)) return sentence(options, mesh, done);
+std::optional<Cure> cure_by_turning(RawMesh mesh, const std::string& options, const std::string& done) {
+  if (!options.empty() && holds_volume(mesh)) return cure(options, mesh, done);
   // Only where no edge has one face or more than two.
   const std::optional<std::size_t> flipped = turned(mesh);
   if (!flipped || !holds_volume(mesh)) return {};
-  return sentence(options + (options.empty() ? "" : " ") + "--orient", mesh,
-                  done + (done.empty() ? "" : ", ") + counted(*flipped, "face turned", "faces turned"));
+  return cure(options + (options.empty() ? "" : " ") + "--orient", mesh,
+              done + (done.empty() ? "" : ", ") + counted(*flipped, "face turned", "faces turned"));
+}
+
+std::optional<Cure> cure_by_largest_shell(const RawMesh& mesh) {
+  RawMesh largest;
+  largest.vertices = mesh.vertices;
+  largest.faces = mesh.faces;
+  const ShellChoice choice = keep_largest_shell(largest);
+  if (choice.shells < 2 || !holds_volume(largest)) return {};
+  return cure(
+      "--largest-shell", largest,
+      fmt::format("{} of {} shells left out, of |volume| {:.6g}", choice.shells - 1, choice.shells, choice.dropped));
 }
 
 } // namespace
@@ -65,9 +83,14 @@ std::string mend_hint(const RawMesh& mesh) {
   if (mesh.faces.size() > most_faces ||
       !std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& v) { return v.allFinite(); }))
     return {};
-  if (std::string hint = hint_by_turning(mesh, "", ""); !hint.empty()) return hint;
+  std::string second_best;
+  const auto best = [&](const std::optional<Cure>& found) {
+    if (found && second_best.empty()) second_best = found->sentence;
+    return found && found->amiss == 0;
+  };
+  if (const auto found = cure_by_turning(mesh, "", ""); best(found)) return found->sentence;
   const double side = bounding_box(mesh.vertices, mesh.faces).longest_side();
-  if (!(side > 0 && std::isfinite(side))) return {};
+  if (!(side > 0 && std::isfinite(side))) return second_best;
   const int power = static_cast<int>(std::floor(std::log10(side)));
   std::size_t merged_before = 0;
   for (const int digits : {0, 6, 5, 4}) {
@@ -82,9 +105,12 @@ std::string mend_hint(const RawMesh& mesh) {
     const std::string done =
         counted(weld.merged, "vertex merged", "vertices merged") +
         (weld.collapsed == 0 ? "" : ", " + counted(weld.collapsed, "face left out", "faces left out"));
-    if (std::string hint = hint_by_turning(std::move(welded), "--weld " + distance, done); !hint.empty()) return hint;
+    if (const auto found = cure_by_turning(std::move(welded), "--weld " + distance, done); best(found))
+      return found->sentence;
   }
-  return {};
+  if (!second_best.empty()) return second_best; // it leaves nothing out
+  const auto found = cure_by_largest_shell(mesh);
+  return best(found) ? found->sentence : "";
 }
 
 std::string repeated_faces(const RawMesh& mesh) {

@@ -7,9 +7,10 @@
 
 namespace cowgpu {
 
-/// The first of these that makes of the mesh a closed, consistently oriented surface of positive volume, as options:
-/// "--orient"; "--weld EPS" for EPS 0 and for 1e-6, 1e-5 and 1e-4 times the power of ten below the longest side of its box,
-/// in the unit of the file; and both. A sentence that names it, the volume and what it merges or turns; "" where none does,
+/// The first of these that makes of the mesh a closed, consistently oriented surface of positive volume of which nothing is
+/// counted twice or subtracted (volume_amiss()), or else the first, which says how much is, as options: "--orient"; "--weld EPS" for
+/// EPS 0 and for 1e-6, 1e-5 and 1e-4 times the power of ten below the longest side of its box, in the unit of the file; both; and,
+/// where none of these gives a volume, "--largest-shell". A sentence that names it, the volume and what it merges or turns; "" where none does,
 /// coordinates are not finite or the work would be more than seconds (over 2^20 faces, for --orient of several shells over
 /// 2^16). The indices must be valid. Memory: a copy of the mesh.
 std::string mend_hint(const RawMesh& mesh);

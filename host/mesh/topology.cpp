@@ -1,5 +1,6 @@
 #include "host/mesh/topology.hpp"
 
+#include "host/counted.hpp"
 #include "host/error.hpp"
 
 #include <fmt/core.h>
@@ -105,10 +106,10 @@ void require_valid_indices(const RawMesh& mesh) {
   for (std::size_t face = 0; face < mesh.faces.size(); ++face)
     for (const std::uint32_t vertex : mesh.faces[face])
       if (vertex >= mesh.vertices.size())
-        throw Error(
-            Fault::mesh_index_range,
-            fmt::format("{}: {} names vertex {}, but there are {} vertices, numbered from 0. Export the mesh again.",
-                        mesh.name, where(mesh, face), vertex, mesh.vertices.size()));
+        throw Error(Fault::mesh_index_range,
+                    fmt::format("{}: {} names vertex {}, but there {} {}, numbered from 0. Export the mesh again.",
+                                mesh.name, where(mesh, face), vertex, mesh.vertices.size() == 1 ? "is" : "are",
+                                counted(mesh.vertices.size(), "vertex", "vertices")));
 }
 
 std::string where(const RawMesh& mesh, std::size_t face) {

@@ -1,5 +1,7 @@
 #include "host/mesh/winding_notes.hpp"
 
+#include "host/counted.hpp"
+#include "host/mesh/cures.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/overlap.hpp"
 #include "host/mesh/topology.hpp"
@@ -50,21 +52,28 @@ public:
   std::size_t count() const { return all_.size(); }
   const Shell& operator[](std::size_t s) const { return all_[s]; }
 
-  /// How often the others wind about a shell; nothing where there were too many such questions.
-  std::optional<int> winding_of_others(std::size_t s) {
+  struct Others {
+    int winding = 0;    ///< how often the others wind about a shell
+    bool holds = false; ///< whether any of them does by itself
+  };
+
+  /// Nothing where there were too many such questions.
+  std::optional<Others> others_about(std::size_t s) {
     bool held = false;
     for (std::size_t o = 0; o < all_.size() && !held; ++o) held = o != s && all_[s].within(all_[o]);
-    if (!held) return 0;
+    if (!held) return Others{};
     if (tests_ == most_tests) return {};
     ++tests_;
     const Face& f = faces_[all_[s].first_face];
     const Vec3 point = (vertices_[f[0]] + vertices_[f[1]] + vertices_[f[2]]) / 3;
-    int winding = 0;
+    std::vector<int> winding(all_.size());
     for (std::size_t g = 0; g < faces_.size(); ++g)
       if (const std::uint32_t o = of_face_[g]; o != s && !all_[s].same(all_[o]) && all_[s].within(all_[o]))
-        winding +=
+        winding[o] +=
             vertical_crossing(vertices_[faces_[g][0]], vertices_[faces_[g][1]], vertices_[faces_[g][2]], point, true);
-    return winding;
+    Others others;
+    for (const int one : winding) others.winding += one, others.holds = others.holds || one != 0;
+    return others;
   }
 
   /// Whether an earlier shell is the same and looks the same way.
@@ -101,6 +110,13 @@ bool counts(const RegionVolume& region, double whole) {
 
 } // namespace
 
+std::vector<std::string> body_notes(const ClosedSurface& surface, Monitor& monitor, unsigned threads) {
+  std::vector<std::string> notes = surface.mesh().notes;
+  const std::vector<std::string> winding = winding_notes(surface, monitor, threads);
+  notes.insert(notes.end(), winding.begin(), winding.end());
+  return notes;
+}
+
 std::vector<std::string> winding_notes(const ClosedSurface& surface, Monitor& monitor, unsigned threads) {
   std::vector<std::string> notes;
   if (surface.mesh().name.starts_with("builtin:")) return notes;
@@ -109,7 +125,7 @@ std::vector<std::string> winding_notes(const ClosedSurface& surface, Monitor& mo
   const bool measured = faces.size() <= most_measured_faces;
   const double whole = volume(surface);
   Shells all(surface);
-  Kind inwards, twice;
+  Kind outside, in_cavities, twice; // the first two look inwards
   std::size_t left_out = 0;
   if (all.count() > 1) {
     const double noise = volume_noise(vertices, faces), whole_area = area(surface);
@@ -122,22 +138,26 @@ std::vector<std::string> winding_notes(const ClosedSurface& surface, Monitor& mo
         twice.add(shell.volume);
         continue;
       }
-      const std::optional<int> others = all.winding_of_others(s);
+      const auto others = all.others_about(s);
       if (!others)
         ++left_out;
-      else if (shell.volume < 0 && *others <= 0)
-        inwards.add(-shell.volume);
-      else if (shell.volume > 0 && *others > 0)
+      else if (shell.volume < 0 && others->winding <= 0)
+        (others->holds ? in_cavities : outside).add(-shell.volume);
+      else if (shell.volume > 0 && others->winding > 0)
         twice.add(shell.volume);
     }
   }
-  if (inwards.count != 0)
-    notes.push_back(
-        fmt::format("{} outside of all others and {} inwards: {} volume of {} is subtracted; --orient turns "
-                    "{} outwards.",
-                    inwards.count == 1 ? "1 shell lies" : fmt::format("{} shells lie", inwards.count),
-                    inwards.pick("looks", "look"), inwards.pick("its", "their"), part_of(inwards.volume, whole),
-                    inwards.pick("it", "them")));
+  std::optional<std::string> found_cure;
+  const auto cure = [&] { // once, as it is tried on the whole mesh
+    if (!found_cure) found_cure = all.count() > 1 ? cure_of_shells(surface.mesh(), monitor) : "";
+    return *found_cure;
+  };
+  for (const auto& [inwards, where] : {std::pair(outside, "outside of all others"), {in_cavities, "in cavities"}})
+    if (inwards.count != 0)
+      notes.push_back(fmt::format(
+          "{} {} and {} inwards: {} volume of {} is subtracted{}.", counted(inwards.count, "shell lies", "shells lie"),
+          inwards.count == 1 && where[0] == 'i' ? "in a cavity" : where, inwards.pick("looks", "look"),
+          inwards.pick("its", "their"), part_of(inwards.volume, whole), cure().empty() ? "" : "; " + cure()));
   if (!measured) {
     if (twice.count != 0)
       notes.push_back(fmt::format("{} is counted twice or more often: {} inside others, or {} the same as one of them, "
@@ -164,11 +184,11 @@ std::vector<std::string> winding_notes(const ClosedSurface& surface, Monitor& mo
         fmt::format("{} is counted twice or more often, as the surface winds round it; `cowgpu inspect` shows "
                     "where faces meet.",
                     part_of(found.overlapped.volume, whole)));
+  const double inwards = outside.volume + in_cavities.volume;
   if (counts(found.inverted, whole) &&
-      std::abs(found.inverted.volume - inwards.volume) > 1e-6 * inwards.volume + found.inverted.uncertainty)
+      std::abs(found.inverted.volume - inwards) > 1e-6 * inwards + found.inverted.uncertainty)
     notes.push_back(fmt::format("{} is inside out, and subtracted; {}`cowgpu inspect` shows where faces meet.",
-                                part_of(found.inverted.volume, whole),
-                                all.count() > 1 ? "--orient turns shells outwards, " : ""));
+                                part_of(found.inverted.volume, whole), cure().empty() ? "" : cure() + ", "));
   return notes;
 }
 

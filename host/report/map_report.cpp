@@ -105,7 +105,7 @@ void write_screen(const MapReport& report, const Sink& sink) {
   const MapQuality& q = report.quality;
   const RawMesh& mesh = *report.mesh;
   sink(mesh_line(mesh) + "\n");
-  for (const std::string& note : mesh.notes) sink("note: " + note + "\n");
+  for (const std::string& note : report.notes) sink("note: " + note + "\n");
   sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", report.map->method, report.map_seconds,
                    report.judge_seconds));
   for (const std::string& note : report.map->notes) sink("note: " + note + "\n");
@@ -140,7 +140,7 @@ void write_screen(const MapReport& report, const Sink& sink) {
 
 void write_json(const MapReport& report, const Sink& sink) {
   const RawMesh& mesh = *report.mesh;
-  std::vector<std::string> notes = mesh.notes;
+  std::vector<std::string> notes = report.notes;
   notes.insert(notes.end(), report.map->notes.begin(), report.map->notes.end());
   ordered_json all = {
       {"schema", "cowgpu.map.v1"},

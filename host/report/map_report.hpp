@@ -27,6 +27,7 @@ struct MapReport {
   std::vector<std::string> command; ///< as typed
   std::string created;              ///< UTC, ISO 8601
   const RawMesh* mesh = nullptr;
+  std::vector<std::string> notes; ///< on the mesh
   const SphereMap* map = nullptr;
   MapQuality quality;
   std::optional<StretchMeasure> stretch; ///< stretch of the stretch map

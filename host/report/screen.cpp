@@ -40,6 +40,15 @@ void write_matrix(const char* name, const Eigen::Matrix3d& matrix, const Sink& s
                      matrix(row, 2)));
 }
 
+// The largest error beside its degree's norm, which may be 0.
+std::string relative_text(const Agreement& agreement) {
+  const DegreeErrors& errors = agreement.errors;
+  const std::size_t l = std::size_t(errors.degree);
+  if (errors.difference[l] > 0 && errors.norm[l] == 0)
+    return fmt::format("{:.1e} in degree {}, exactly zero by {}", errors.difference[l], l, agreement.against);
+  return fmt::format("{:.1e} of degree {}", errors.relative(), l);
+}
+
 void write_accuracy(const ExpandResult& result, const Sink& sink) {
   const Accuracy& accuracy = result.accuracy;
   if (accuracy.how == Verify::none) {
@@ -48,8 +57,8 @@ void write_accuracy(const ExpandResult& result, const Sink& sink) {
   }
   for (const std::string& sentence : sentences(accuracy.estimate)) sink("accuracy: " + sentence + "\n");
   for (const Agreement& a : accuracy.agreements)
-    sink(fmt::format("accuracy: {} against {}: {:.1e} of degree {}, {:.2g} of its estimated error (bound {:.0f}: {})\n",
-                     a.path, a.against, a.errors.relative(), a.errors.degree, a.errors.ratio, Accuracy::bound,
+    sink(fmt::format("accuracy: {} against {}: {}, {:.2g} of its estimated error (bound {:.0f}: {})\n", a.path,
+                     a.against, relative_text(a), a.errors.ratio, Accuracy::bound,
                      a.errors.ratio <= Accuracy::bound ? "passed" : "FAILED"));
   sink(fmt::format(
       "accuracy: compared on {} triangles{}, degrees 0 to {}\n", accuracy.triangles,

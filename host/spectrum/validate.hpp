@@ -22,7 +22,8 @@ struct Check {
 
 struct Validation {
   std::vector<Check> checks;
-  ErrorEstimate estimate; ///< estimate for the CPU path's moments, without what a cut-off above the default leaves out
+  /// Estimate for the CPU path's moments, with what the cut-off leaves out; checks allow for the default's only.
+  ErrorEstimate estimate;
 };
 
 /// Moments of `body` to `lmax` by the reference in extended precision, the CPU path on one and on all threads, and, if
