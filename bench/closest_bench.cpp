@@ -4,11 +4,12 @@
 #include "bench/report.hpp"
 #include "host/backend.hpp"
 #include "host/clock.hpp"
-#include "host/cpu/closest.hpp"
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/parallel.hpp"
+#include "host/plan/closest_query.hpp"
+#include "host/plan/morton.hpp"
 #include "host/reference/closest.hpp"
 #include "tests/support/cgal_distance.hpp"
 
@@ -160,14 +161,14 @@ private:
     };
     const auto warm = [this](const std::vector<Vec3>& queries, std::vector<double>& distances) {
       one_by_one<Warm>(queries, distances, [this](const Vec3& q, Warm& last) {
-        const auto found = cpu::closest_point(*tree_, q, std::numeric_limits<double>::infinity(), last.face);
+        const auto found = plan::closest_point(*tree_, q, std::numeric_limits<double>::infinity(), last.face);
         last.face = found->face;
         return found->distance;
       });
     };
     const auto cold = [this](const std::vector<Vec3>& queries, std::vector<double>& distances) {
       one_by_one<Warm>(queries, distances,
-                       [this](const Vec3& q, Warm&) { return cpu::closest_point(*tree_, q)->distance; });
+                       [this](const Vec3& q, Warm&) { return plan::closest_point(*tree_, q)->distance; });
     };
     const auto cgal = [this](const std::vector<Vec3>& queries, std::vector<double>& distances) {
       one_by_one<Warm>(queries, distances, [this](const Vec3& q, Warm&) { return (cgal_->closest(q) - q).norm(); });
@@ -214,7 +215,7 @@ private:
   void compare(const std::string& key, const std::string& title, const std::vector<Vec3>& queries) {
     say("\n{}\n", title);
     verify(queries);
-    const auto order = cpu::morton_order(queries, tree_->low, tree_->high, threads_);
+    const auto order = plan::morton_order(queries, tree_->low, tree_->high, threads_);
     std::vector<Vec3> sorted(queries.size());
     for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = queries[order[i]];
     std::vector<Way> all = ways();

@@ -1,5 +1,5 @@
 // Advances every point by one event: from the answer to its query to its next query. The method, its names and its numbers
-// are those of host/cpu/flow_path.cpp; the same operations in the same order, all of them precise, give the same bits. The
+// are those of host/plan/flow_path.cpp; the same operations in the same order, all of them precise, give the same bits. The
 // candidates are those of closest.comp; among them the nearest face is decided in double precision.
 //
 // Software devices run every branch under a mask, and what is called is inlined. So there is one loop with one place that

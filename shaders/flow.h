@@ -67,7 +67,7 @@ struct FlowEntry {
   uint query;
 };
 
-// What host and device tell each other about a point; lengths and times are those of host/cpu/flow_path.hpp.
+// What host and device tell each other about a point; lengths and times are those of host/plan/flow_path.hpp.
 struct FlowPoint {
   double query[3];
   double place[3];  // in: x; out: the end, or of FLOW_RECORDED

@@ -18,7 +18,7 @@ layout(push_constant) uniform Push { FlowPush push; };
 // Flags of host/flow.hpp.
 const uint slid_flag = 1, stationary_flag = 2, unfinished_flag = 16, notch_flag = 64;
 
-// Lengths relative to the diagonal, and the last to the distance, as in host/cpu/flow_path.cpp.
+// Lengths relative to the diagonal, and the last to the distance, as in host/plan/flow_path.cpp.
 const double rounding = 1e-13lf, tie = 1e-11lf, apart = 1e-9lf, off_surface = 1e-7lf, digits = 4e-15lf;
 const double same_point = 1e-6lf, near_share = 1e3lf;
 

@@ -44,7 +44,7 @@ dvec3 velocity, extra_point;
 double view_distance, extra_distance;
 bool all_inside;
 
-// The nearest of a query's candidates: closest_of of host/cpu/closest_kernel.hpp.
+// The nearest of a query's candidates: closest_of of host/plan/closest_kernel.hpp.
 precise double edge_distance2(double px, double py, double ex, double ey, double inverse) {
   precise double along = (px * ex + py * ey) * inverse;
   precise double s = within(along, 0.0lf, 1.0lf);

@@ -1,6 +1,6 @@
-#include "host/cpu/closest.hpp"
 #include "host/error.hpp"
 #include "host/mesh/builtin.hpp"
+#include "host/plan/closest_query.hpp"
 #include "tests/support/compare_closest.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -216,15 +216,15 @@ TEST_CASE("closest points depend neither on threads nor on the other queries, an
   std::uint32_t warm = no_face;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const double d = std::abs(all.distance[i]);
-    const auto cold = cpu::closest_point(tree, queries[i]),
-               bounded = cpu::closest_point(tree, queries[i], d * (1 + 1e-9) + 1e-300, warm);
+    const auto cold = plan::closest_point(tree, queries[i]),
+               bounded = plan::closest_point(tree, queries[i], d * (1 + 1e-9) + 1e-300, warm);
     REQUIRE((cold && bounded));
     for (const SurfacePoint& found : {*cold, *bounded}) {
       CHECK((found.distance == d && found.face == all.face[i] && found.point == all.point[i]));
       CHECK((found.feature == all.feature[i] && found.barycentric == all.barycentric[i]));
     }
-    if (d > 1e-9) CHECK_FALSE(cpu::closest_point(tree, queries[i], d * (1 - 1e-9), warm));
-    CHECK(cpu::winding_number(tree, queries[i]) == all.winding[i]);
+    if (d > 1e-9) CHECK_FALSE(plan::closest_point(tree, queries[i], d * (1 - 1e-9), warm));
+    CHECK(plan::winding_number(tree, queries[i]) == all.winding[i]);
     warm = cold->face;
   }
 }

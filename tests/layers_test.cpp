@@ -19,7 +19,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/plan", {"host"}},
     {"host/reference", {"host"}},
     {"host/cpu", {"host", "host/plan", "host/reference"}},
-    {"host/gpu", {"host", "host/plan", "host/cpu", "engine", "engine/kernels"}},
+    {"host/gpu", {"host", "host/plan", "engine", "engine/kernels"}},
     {"host/mesh", {"host", "host/plan"}},
     {"host/io", {"host", "host/map", "host/mesh", "host/spectrum", "host/flow"}},
     {"host/map", {"host", "host/mesh"}},

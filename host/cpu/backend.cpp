@@ -11,6 +11,8 @@
 #include "host/cpu/sample.hpp"
 #include "host/cpu/sphere_transform.hpp"
 #include "host/parallel.hpp"
+#include "host/plan/closest_call.hpp"
+#include "host/plan/flow_call.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -64,13 +66,13 @@ public:
     return cpu::distance_field(vertices, faces, threads_);
   }
   MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) const override {
-    return {cpu::distance_field_bytes(vertices, faces, queries), 0};
+    return {plan::distance_field_bytes(vertices, faces, queries), 0};
   }
   std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces) override {
     return cpu::distance_flow(vertices, faces, threads_);
   }
   MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const override {
-    return {cpu::distance_flow_bytes(vertices, faces, starts), 0};
+    return {plan::distance_flow_bytes(vertices, faces, starts), 0};
   }
   PotentialField potential(const PotentialProblem& problem, Monitor& monitor, RunReport* report) override {
     return cpu::potential(problem, threads_, monitor, report);

@@ -3,7 +3,6 @@
 
 #include "host/flow.hpp"
 
-#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -12,8 +11,5 @@ namespace cowgpu::cpu {
 /// On `threads` threads (0: all). Throws what FlowSurface throws.
 std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces,
                                             unsigned threads);
-
-/// Bytes of a flow and of one call of so many starts, their result included, streamlines not.
-std::uint64_t distance_flow_bytes(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts);
 
 } // namespace cowgpu::cpu

@@ -1,8 +1,7 @@
 #include "host/gpu/closest.hpp"
 
-#include "host/cpu/closest.hpp"
-#include "host/cpu/closest_call.hpp"
 #include "host/gpu/closest_faces.hpp"
+#include "host/plan/closest_call.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -11,7 +10,7 @@ namespace cowgpu::gpu {
 namespace {
 
 constexpr std::size_t batch = ClosestFaces::batch;
-static_assert(batch % cpu::ClosestCall::part == 0);
+static_assert(batch % plan::ClosestCall::part == 0);
 
 class GpuDistanceField final : public DistanceField {
 public:
@@ -21,7 +20,7 @@ public:
 
   ClosestPoints closest(std::span<const Vec3> queries, const ClosestOptions& options, Monitor& monitor,
                         ClosestReport* report) override {
-    cpu::ClosestCall call(tree_, queries, options, 0);
+    plan::ClosestCall call(tree_, queries, options, 0);
     const engine::StopScope stop(faces_.device(), [&monitor] { return monitor.stopped(); });
     faces_.device().take_profile();
     for (std::size_t begin = 0; begin < queries.size(); begin += batch) {
@@ -56,7 +55,7 @@ MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, st
   MemoryNeed need;
   need.device = ClosestFaces::device_bytes(faces, at_once);
   // The device's tree is built beside a tree of boxes, and both are given up.
-  need.host = cpu::distance_field_bytes(vertices, faces, queries) + 360 * faces + need.device;
+  need.host = plan::distance_field_bytes(vertices, faces, queries) + 360 * faces + need.device;
   return need;
 }
 

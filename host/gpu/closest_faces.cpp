@@ -1,8 +1,8 @@
 #include "host/gpu/closest_faces.hpp"
 
-#include "host/cpu/closest_kernel.hpp"
 #include "host/gpu/errors.hpp"
 #include "host/parallel.hpp"
+#include "host/plan/closest_kernel.hpp"
 #include "host/plan/closest_texels.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 
 namespace cowgpu::gpu {
 
-static_assert(ClosestFaces::lane_queries == cpu::most_decided);
+static_assert(ClosestFaces::lane_queries == plan::most_decided);
 
 ClosestFaces::ClosestFaces(std::shared_ptr<engine::Gpu> gpu, std::uint32_t iteration_budget,
                            const plan::ClosestTree& tree)
@@ -58,7 +58,7 @@ void ClosestFaces::decide_lane(std::size_t lane, std::span<const Vec3> points, s
   if (found.candidates == engine::closest_left ||
       std::any_of(points.begin(), points.end(), [&](const Vec3& q) { return tree_.is_far(q); })) {
     for (std::size_t i = 0; i < points.size(); ++i)
-      faces[i] = cpu::closest_single(tree_, points[i], std::numeric_limits<double>::infinity(), no_face);
+      faces[i] = plan::closest_single(tree_, points[i], std::numeric_limits<double>::infinity(), no_face);
     return;
   }
   std::array<std::uint32_t, engine::most_closest_candidates> slots, masks;
@@ -67,8 +67,8 @@ void ClosestFaces::decide_lane(std::size_t lane, std::span<const Vec3> points, s
     slots[count] = slots_[c.triangle()];
     masks[count++] = c.queries();
   }
-  cpu::closest_of(tree_, points.data(), points.size(), std::span(slots).first(count), std::span(masks).first(count),
-                  faces);
+  plan::closest_of(tree_, points.data(), points.size(), std::span(slots).first(count), std::span(masks).first(count),
+                   faces);
   if (std::find(faces, faces + points.size(), no_face) != faces + points.size())
     throw Error(Fault::device_failed, fmt::format("the device {} named no candidate for the closest face of a point; "
                                                   "use --device cpu and report this",

@@ -35,7 +35,7 @@ public:
   std::span<const std::uint32_t> slots() const { return slots_; }
 
   /// The closest faces of queries of the last search from `first`, a multiple of lane_queries, on; as
-  /// cpu::closest_single has them. Safe from several threads. Throws Error(device_failed) where the device missed one.
+  /// plan::closest_single has them. Safe from several threads. Throws Error(device_failed) where the device missed one.
   void decide(std::size_t first, std::span<const Vec3> points, std::uint32_t* faces);
 
   engine::Gpu& device() { return *gpu_; }

@@ -1,11 +1,10 @@
 #include "host/gpu/flow.hpp"
 
 #include "engine/kernels/flow.hpp"
-#include "host/cpu/flow.hpp"
-#include "host/cpu/flow_call.hpp"
 #include "host/gpu/closest_faces.hpp"
 #include "host/gpu/errors.hpp"
 #include "host/parallel.hpp"
+#include "host/plan/flow_call.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -37,7 +36,7 @@ void put(const Vec3& v, double* to) {
 // The points on their way.
 class Wavefront {
 public:
-  Wavefront(cpu::FlowCall& call, const cpu::FlowSurface& surface, ClosestFaces& faces, engine::Flow& device,
+  Wavefront(plan::FlowCall& call, const plan::FlowSurface& surface, ClosestFaces& faces, engine::Flow& device,
             const engine::FlowNumbers& numbers)
       : call_(call), surface_(surface), faces_(faces), device_(device), numbers_(numbers) {}
 
@@ -55,7 +54,7 @@ public:
     }
     parallel_for(0, going_.size(), [&](std::size_t i, unsigned) {
       check_stop(monitor);
-      cpu::FlowRun& run = live_[going_[i]].run;
+      plan::FlowRun& run = live_[going_[i]].run;
       run.go_back();
       while (!run.done()) run.answer(surface_.nearest(run.query(), run.warm()));
     });
@@ -68,7 +67,7 @@ public:
 
 private:
   struct Live {
-    cpu::FlowRun run;
+    plan::FlowRun run;
     FlowWhat what = FlowWhat::find;
     std::uint32_t face = no_face;         // the answer, if the host gave it
     std::uint32_t answers = 0, moves = 0; // by the device
@@ -83,7 +82,7 @@ private:
       const std::uint32_t place = going_[i];
       if (live_[place].run.done()) {
         if (next_ == order.size()) continue;
-        live_[place] = {cpu::FlowRun(call_, order[next_++])};
+        live_[place] = {plan::FlowRun(call_, order[next_++])};
         passes_ = 0;
         begin(place);
       }
@@ -91,7 +90,7 @@ private:
     }
     going_.resize(to);
     while (live_.size() < room_ && next_ < order.size()) {
-      live_.push_back({cpu::FlowRun(call_, order[next_++])});
+      live_.push_back({plan::FlowRun(call_, order[next_++])});
       going_.push_back(std::uint32_t(live_.size() - 1));
       begin(going_.back());
     }
@@ -197,8 +196,8 @@ private:
     Live& live = live_[place];
     live.run.answer(face);
     if (live.run.done()) return;
-    const cpu::FlowDeparture from = live.run.path().departure();
-    const cpu::FlowEnd& so_far = live.run.path().end();
+    const plan::FlowDeparture from = live.run.path().departure();
+    const plan::FlowEnd& so_far = live.run.path().end();
     FlowPlace& point = device_.places()[place];
     put(live.run.query(), point.query);
     put(from.place, point.place);
@@ -207,9 +206,9 @@ private:
     point.time = from.time;
     point.distance = from.distance;
     point.radius = from.radius;
-    point.phase = from.asks == cpu::FlowDeparture::Asks::lift  ? engine::FlowAsks::lift
-                  : from.asks == cpu::FlowDeparture::Asks::ray ? engine::FlowAsks::ray
-                                                               : engine::FlowAsks::last;
+    point.phase = from.asks == plan::FlowDeparture::Asks::lift  ? engine::FlowAsks::lift
+                  : from.asks == plan::FlowDeparture::Asks::ray ? engine::FlowAsks::ray
+                                                                : engine::FlowAsks::last;
     point.face = from.face;
     point.flags = so_far.flags;
     point.marks = (from.inside ? FlowPlace::inside : 0) | (live.run.tighter() ? FlowPlace::tighter : 0);
@@ -223,7 +222,7 @@ private:
 
   void arrive(std::uint32_t place) {
     const FlowPlace& point = device_.places()[place];
-    cpu::FlowEnd end;
+    plan::FlowEnd end;
     end.position = vector(point.place);
     end.distance = point.distance;
     end.face = point.face;
@@ -241,8 +240,8 @@ private:
     begin(place);
   }
 
-  cpu::FlowCall& call_;
-  const cpu::FlowSurface& surface_;
+  plan::FlowCall& call_;
+  const plan::FlowSurface& surface_;
   ClosestFaces& faces_;
   engine::Flow& device_;
   const engine::FlowNumbers numbers_;
@@ -276,18 +275,18 @@ public:
 
   FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
                   Monitor& monitor, FlowReport* report) override {
-    cpu::FlowCall call(surface_, starts, normals, options, 0);
+    plan::FlowCall call(surface_, starts, normals, options, 0);
     const engine::StopScope stop(faces_.device(), [&monitor] { return monitor.stopped(); });
     faces_.device().take_profile();
     engine::FlowNumbers numbers;
     numbers.time = options.time;
-    numbers.time_reached = options.time * (1 - cpu::FlowPath::time_digits);
+    numbers.time_reached = options.time * (1 - plan::FlowPath::time_digits);
     numbers.scale = surface_.diagonal();
-    const double tolerances[] = {options.tolerance, cpu::FlowRun::tighter(options.tolerance)};
+    const double tolerances[] = {options.tolerance, plan::FlowRun::tighter(options.tolerance)};
     for (int way = 0; way < 2; ++way) {
       numbers.tolerance[way] = tolerances[way];
-      numbers.longest[way] = cpu::FlowPath::longest_step(tolerances[way]);
-      numbers.rounds[way] = cpu::FlowPath::most_steps(tolerances[way]);
+      numbers.longest[way] = plan::FlowPath::longest_step(tolerances[way]);
+      numbers.rounds[way] = plan::FlowPath::most_steps(tolerances[way]);
     }
     FlowReport passes;
     Wavefront(call, surface_, faces_, *device_, numbers).run(monitor, passes);
@@ -303,7 +302,7 @@ public:
   }
 
 private:
-  cpu::FlowSurface surface_;
+  plan::FlowSurface surface_;
   ClosestFaces faces_;
   std::unique_ptr<engine::Flow> device_;
 };
@@ -321,8 +320,8 @@ MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std
   need.device =
       ClosestFaces::device_bytes(faces, live) + engine::Flow::surface_bytes(faces) + engine::Flow::batch_bytes(live);
   // The device's tree is built beside a tree of boxes, and both are given up.
-  need.host = cpu::distance_flow_bytes(vertices, faces, starts) + 360 * faces + need.device +
-              live * (sizeof(cpu::FlowRun) + sizeof(Vec3) + 48);
+  need.host = plan::distance_flow_bytes(vertices, faces, starts) + 360 * faces + need.device +
+              live * (sizeof(plan::FlowRun) + sizeof(Vec3) + 48);
   return need;
 }
 

@@ -1,8 +1,9 @@
-#include "host/cpu/flow_surface.hpp"
+#include "host/plan/flow_surface.hpp"
 
-#include "host/cpu/closest.hpp"
-#include "host/cpu/closest_kernel.hpp"
 #include "host/error.hpp"
+#include "host/plan/closest_kernel.hpp"
+#include "host/plan/closest_query.hpp"
+#include "host/plan/morton.hpp"
 #include "host/reference/flow.hpp"
 
 #include <Eigen/Geometry>
@@ -11,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 
 FlowSurface::FlowSurface(std::span<const Vec3> vertices, std::span<const Face> faces)
     : tree_(vertices, faces), diagonal_((tree_.high - tree_.low).norm()) {
@@ -27,7 +28,7 @@ FlowSurface::FlowSurface(std::span<const Vec3> vertices, std::span<const Face> f
 }
 
 Foot FlowSurface::foot(std::uint32_t face, const Vec3& p) const {
-  const plan::TriangleFrame<double>& t = frames_[face];
+  const TriangleFrame<double>& t = frames_[face];
   const Eigen::Map<const Vec3> a(t.a), u(t.u), v(t.v);
   const Vec3 r = p - a;
   const double x = reference::dot<double>(u, r), y = reference::dot<double>(v, r);
@@ -56,11 +57,11 @@ std::uint32_t FlowSurface::nearest(const Vec3& x, std::uint32_t warm) const {
 }
 
 int FlowSurface::winding_number(const Vec3& x) const {
-  return cpu::winding_number(tree_, x);
+  return plan::winding_number(tree_, x);
 }
 
 std::vector<std::uint32_t> FlowSurface::order(std::span<const Vec3> points, unsigned threads) const {
   return morton_order(points, tree_.low, tree_.high, threads);
 }
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

@@ -1,9 +1,9 @@
 // N numbers at once, in as many vectors as the instruction set needs: include after hwy/foreach_target.h.
-#if defined(COWGPU_HOST_CPU_WIDE_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef COWGPU_HOST_CPU_WIDE_INL
-#undef COWGPU_HOST_CPU_WIDE_INL
+#if defined(COWGPU_HOST_PLAN_WIDE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef COWGPU_HOST_PLAN_WIDE_INL
+#undef COWGPU_HOST_PLAN_WIDE_INL
 #else
-#define COWGPU_HOST_CPU_WIDE_INL
+#define COWGPU_HOST_PLAN_WIDE_INL
 #endif
 
 #include <hwy/highway.h>
@@ -12,7 +12,7 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace cowgpu::cpu::HWY_NAMESPACE {
+namespace cowgpu::plan::HWY_NAMESPACE {
 namespace hw = hwy::HWY_NAMESPACE;
 
 template <class T, std::size_t N>
@@ -171,6 +171,6 @@ HWY_INLINE typename W::Number most_lane(const W& a) {
   return hw::GetLane(hw::MaxOfLanes(typename W::Tag(), r));
 }
 
-} // namespace cowgpu::cpu::HWY_NAMESPACE
+} // namespace cowgpu::plan::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 
 /// The closest point of one triangle.
 struct Foot {
@@ -23,14 +23,14 @@ public:
   /// Throws what check_distance_surface throws, and Error(mesh_open) for a surface that is not closed.
   FlowSurface(std::span<const Vec3> vertices, std::span<const Face> faces);
 
-  const plan::ClosestTree& tree() const { return tree_; }
+  const ClosestTree& tree() const { return tree_; }
   std::size_t faces() const { return normals_.size(); }
   double diagonal() const { return diagonal_; }                           ///< diagonal of the bounding box
   const Vec3& normal(std::uint32_t face) const { return normals_[face]; } ///< outwards; zero for a face without area
 
-  const plan::TriangleFrame<double>& frame(std::uint32_t face) const { return frames_[face]; }
+  const TriangleFrame<double>& frame(std::uint32_t face) const { return frames_[face]; }
 
-  /// As plan::ClosestTree::on_face, less what a flow does not need.
+  /// As ClosestTree::on_face, less what a flow does not need.
   Foot foot(std::uint32_t face, const Vec3& x) const;
 
   /// A face with the least distance from x. `warm`: no_face, or a face that may be near x.
@@ -43,10 +43,10 @@ public:
   std::vector<std::uint32_t> order(std::span<const Vec3> points, unsigned threads) const;
 
 private:
-  plan::ClosestTree tree_;
-  std::vector<plan::TriangleFrame<double>> frames_; ///< face by face
+  ClosestTree tree_;
+  std::vector<TriangleFrame<double>> frames_; ///< face by face
   std::vector<Vec3> normals_;
   double diagonal_ = 0;
 };
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

@@ -2,8 +2,8 @@
 // results.
 #pragma once
 
-#include "host/cpu/flow_path.hpp"
 #include "host/flow.hpp"
+#include "host/plan/flow_path.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -12,7 +12,10 @@
 #include <span>
 #include <vector>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
+
+/// Bytes of a flow and of one call of so many starts, their result included, streamlines not.
+std::uint64_t distance_flow_bytes(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts);
 
 class FlowCall {
 public:
@@ -77,4 +80,4 @@ private:
   FlowPath path_;
 };
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

@@ -1,16 +1,17 @@
-#include "host/cpu/closest_call.hpp"
+#include "host/plan/closest_call.hpp"
 
 #include "host/clock.hpp"
-#include "host/cpu/closest.hpp"
 #include "host/error.hpp"
 #include "host/parallel.hpp"
+#include "host/plan/closest_query.hpp"
+#include "host/plan/morton.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 namespace {
 
 // Balls about two queries that reach the surface hold no face inside. Where they overlap, the winding numbers are equal.
@@ -21,7 +22,12 @@ bool same_winding(const Vec3& p, double p_distance, const Vec3& q, double q_dist
 
 } // namespace
 
-ClosestCall::ClosestCall(const plan::ClosestTree& tree, std::span<const Vec3> queries, const ClosestOptions& options,
+std::uint64_t distance_field_bytes(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) {
+  constexpr std::uint64_t one = 2 * sizeof(double) + 2 * sizeof(Vec3) + sizeof(SurfaceFeature) + 8;
+  return ClosestTree::bytes(faces, vertices) + queries * (one + 20);
+}
+
+ClosestCall::ClosestCall(const ClosestTree& tree, std::span<const Vec3> queries, const ClosestOptions& options,
                          unsigned threads)
     : tree_(tree), queries_(queries), threads_(threads), start_(Clock::now()) {
   check_queries(queries);
@@ -103,4 +109,4 @@ std::uint64_t ClosestCall::set_signs(std::span<const Vec3> points, const double*
   return rays;
 }
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

@@ -15,12 +15,12 @@
 // path after another or, in wavefronts, one query of each of many at once. The answers decide the bits, not who gives them.
 #pragma once
 
-#include "host/cpu/flow_surface.hpp"
 #include "host/flow.hpp"
+#include "host/plan/flow_surface.hpp"
 
 #include <array>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 
 /// What a path came to.
 struct FlowEnd {
@@ -173,4 +173,4 @@ private:
   Step slide_;
 };
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

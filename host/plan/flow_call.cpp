@@ -1,14 +1,16 @@
-#include "host/cpu/flow_call.hpp"
+#include "host/plan/flow_call.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/plan/closest_tree.hpp"
+#include "host/plan/morton.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 namespace {
 
 void check(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options) {
@@ -56,6 +58,12 @@ void summarise(const FlowPoints& points, FlowReport& report) {
 }
 
 } // namespace
+
+std::uint64_t distance_flow_bytes(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) {
+  constexpr std::uint64_t frame = sizeof(TriangleFrame<double>) + sizeof(Vec3);
+  constexpr std::uint64_t one = 2 * sizeof(Vec3) + 2 * sizeof(double) + 2 * sizeof(std::uint32_t) + 1;
+  return ClosestTree::bytes(faces, vertices) + faces * frame + starts * (one + 20);
+}
 
 FlowCall::FlowCall(const FlowSurface& surface, std::span<const Vec3> starts, std::span<const Vec3> normals,
                    const FlowOptions& options, unsigned threads)
@@ -186,4 +194,4 @@ void FlowRun::arrive(const FlowEnd& found) {
   call.set(start_, end);
 }
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

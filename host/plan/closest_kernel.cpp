@@ -3,11 +3,11 @@
 // triangles at once. Both gather candidates in single precision, within twice its margin of the best; whatever is still
 // within it at the end is decided in double precision.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "host/cpu/closest_kernel.cpp"
+#define HWY_TARGET_INCLUDE "host/plan/closest_kernel.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target must come first
-#include "host/cpu/closest_kernel.hpp"
-#include "host/cpu/wide-inl.hpp"
+#include "host/plan/closest_kernel.hpp"
+#include "host/plan/wide-inl.hpp"
 
 #include <hwy/highway.h>
 
@@ -17,7 +17,7 @@
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
-namespace cowgpu::cpu::HWY_NAMESPACE {
+namespace cowgpu::plan::HWY_NAMESPACE {
 
 using Floats = Wide<float, packet>;
 using Doubles = Wide<double, 8>;
@@ -93,14 +93,14 @@ HWY_INLINE Floats single_distance2(const Frame<Floats>& t, const Floats* p) {
   return in_plane(t, along(t.u, t.a[0]), along(t.v, t.a[1]), along(t.n, t.a[2]));
 }
 
-HWY_INLINE Floats single_distance2(const plan::TriangleFrame<float>& t, const Floats* p) {
+HWY_INLINE Floats single_distance2(const TriangleFrame<float>& t, const Floats* p) {
   const float* numbers = t.a;
   return single_distance2(frame_from<Floats>([&](std::size_t k) HWY_ATTR { return wide_set<Floats>(numbers[k]); }), p);
 }
 
 // The same rounding for any number of lanes, so that packets and single points agree.
 template <class W>
-HWY_INLINE W double_distance2(const plan::TriangleFrame<double>& triangle, const W* p) {
+HWY_INLINE W double_distance2(const TriangleFrame<double>& triangle, const W* p) {
   const double* numbers = triangle.a;
   const auto t = frame_from<W>([&](std::size_t k) HWY_ATTR { return wide_set<W>(numbers[k]); });
   const W rx = p[0] - t.a[0], ry = p[1] - t.a[1], rz = p[2] - t.a[2];
@@ -109,7 +109,7 @@ HWY_INLINE W double_distance2(const plan::TriangleFrame<double>& triangle, const
 }
 
 // Between 16 boxes and a box or a point (low = high).
-HWY_INLINE Floats box_distance2(const plan::ClosestBoxes& boxes, const Floats* low, const Floats* high) {
+HWY_INLINE Floats box_distance2(const ClosestBoxes& boxes, const Floats* low, const Floats* high) {
   const Floats zero = wide_set<Floats>(0);
   const auto gap = [&](std::size_t c) HWY_ATTR {
     return most(most(wide_load<Floats>(boxes.low[c]) - high[c], low[c] - wide_load<Floats>(boxes.high[c])), zero);
@@ -125,10 +125,10 @@ struct Waiting {
 
 // Children to be visited, the nearest on top.
 struct Stack {
-  Waiting items[plan::closest_stack];
+  Waiting items[closest_stack];
   std::size_t count = 0;
 
-  HWY_INLINE void push(const plan::ClosestNode& node, const Floats& distance2, std::uint32_t which) {
+  HWY_INLINE void push(const ClosestNode& node, const Floats& distance2, std::uint32_t which) {
     HWY_ALIGN float d2[packet];
     store(distance2, d2);
     const std::size_t bottom = count;
@@ -143,13 +143,13 @@ struct Stack {
 };
 
 HWY_INLINE float margin_at(float largest) {
-  return 2 * plan::closest_margin * std::max(1.0F, largest);
+  return 2 * closest_margin * std::max(1.0F, largest);
 }
 
 // The packet's candidates.
 class PacketCandidates {
 public:
-  PacketCandidates(const plan::ClosestTree& tree, const double (*points)[packet]) : tree_(tree), points_(points) {
+  PacketCandidates(const ClosestTree& tree, const double (*points)[packet]) : tree_(tree), points_(points) {
     for (std::size_t h = 0; h < 2; ++h) {
       best_[h] = wide_set<Doubles>(infinite);
       face_[h] = wide_set<Doubles>(double(no_face));
@@ -190,7 +190,7 @@ public:
 
 private:
   static constexpr std::size_t most_candidates = 256;
-  const plan::ClosestTree& tree_;
+  const ClosestTree& tree_;
   const double (*points_)[packet];
   Floats distances_[most_candidates];
   std::uint32_t slots_[most_candidates];
@@ -198,8 +198,7 @@ private:
   Doubles best_[2], face_[2];
 };
 
-void Packet(const plan::ClosestTree& tree, const Vec3* points, std::size_t count, WarmSlots& warm,
-            std::uint32_t* faces) {
+void Packet(const ClosestTree& tree, const Vec3* points, std::size_t count, WarmSlots& warm, std::uint32_t* faces) {
   HWY_ALIGN double exact[3][packet];
   HWY_ALIGN float single[3][packet];
   for (std::size_t i = 0; i < packet; ++i) {
@@ -237,13 +236,13 @@ void Packet(const plan::ClosestTree& tree, const Vec3* points, std::size_t count
     const Waiting at = stack.items[--stack.count];
     if (at.distance2 > widest) continue;
     if (at.child >= 0) {
-      const plan::ClosestNode& node = tree.nodes[std::size_t(at.child)];
+      const ClosestNode& node = tree.nodes[std::size_t(at.child)];
       const Floats d2 = box_distance2(node.boxes, low, high);
       stack.push(node, d2, bits(d2 <= wide_set<Floats>(widest)));
       continue;
     }
     const auto leaf_index = std::uint32_t(~at.child);
-    const plan::ClosestBoxes& boxes = tree.leaves[leaf_index].boxes;
+    const ClosestBoxes& boxes = tree.leaves[leaf_index].boxes;
     bool changed = false;
     for (std::uint32_t which = bits(box_distance2(boxes, low, high) <= wide_set<Floats>(widest)); which;
          which &= which - 1) {
@@ -281,7 +280,7 @@ struct Best {
   double distance2;
   std::uint32_t face = no_face;
 
-  HWY_INLINE void take(const plan::ClosestTree& tree, std::uint32_t slot, const OneDouble* p) {
+  HWY_INLINE void take(const ClosestTree& tree, std::uint32_t slot, const OneDouble* p) {
     HWY_ALIGN double d2[1];
     store(double_distance2(tree.frames[slot], p), d2);
     const std::uint32_t candidate = tree.face_of_slot[slot];
@@ -290,12 +289,12 @@ struct Best {
   }
 };
 
-std::uint32_t Single(const plan::ClosestTree& tree, const Vec3& point, double below, std::uint32_t warm_slot) {
+std::uint32_t Single(const ClosestTree& tree, const Vec3& point, double below, std::uint32_t warm_slot) {
   const OneDouble exact[3] = {wide_set<OneDouble>(point.x()), wide_set<OneDouble>(point.y()),
                               wide_set<OneDouble>(point.z())};
   Best result{below * below};
   const Vec3 offset = (point - tree.centre) * tree.scale;
-  if (offset.cwiseAbs().maxCoeff() > plan::closest_far) {
+  if (offset.cwiseAbs().maxCoeff() > closest_far) {
     for (std::uint32_t slot = 0; slot < tree.frames.size(); ++slot)
       if (tree.face_of_slot[slot] != no_face) result.take(tree, slot, exact);
     return result.face;
@@ -333,13 +332,13 @@ std::uint32_t Single(const plan::ClosestTree& tree, const Vec3& point, double be
     const Waiting at = stack.items[--stack.count];
     if (at.distance2 > bound) continue;
     if (at.child >= 0) {
-      const plan::ClosestNode& node = tree.nodes[std::size_t(at.child)];
+      const ClosestNode& node = tree.nodes[std::size_t(at.child)];
       const Floats d2 = box_distance2(node.boxes, p, p);
       stack.push(node, d2, bits(d2 <= wide_set<Floats>(bound)));
       continue;
     }
     const auto leaf_index = std::size_t(~at.child);
-    const plan::ClosestLeaf& leaf = tree.leaves[leaf_index];
+    const ClosestLeaf& leaf = tree.leaves[leaf_index];
     const auto frame = frame_from<Floats>([&](std::size_t k) HWY_ATTR { return wide_load<Floats>(leaf.frame[k]); });
     const Floats d2 = single_distance2(frame, p);
     std::uint32_t near = bits(d2 <= wide_set<Floats>(bound));
@@ -362,7 +361,7 @@ std::uint32_t Single(const plan::ClosestTree& tree, const Vec3& point, double be
   return result.face;
 }
 
-void Decide(const plan::ClosestTree& tree, const Vec3* points, std::size_t count, std::span<const std::uint32_t> slots,
+void Decide(const ClosestTree& tree, const Vec3* points, std::size_t count, std::span<const std::uint32_t> slots,
             std::span<const std::uint32_t> masks, std::uint32_t* faces) {
   HWY_ALIGN double exact[3][most_decided], d2[most_decided];
   double best[most_decided];
@@ -383,7 +382,7 @@ void Decide(const plan::ClosestTree& tree, const Vec3* points, std::size_t count
 }
 
 // Rounding to single precision keeps the order, so no face is missed.
-HWY_INLINE std::uint32_t in_column(const plan::ClosestBoxes& boxes, const Floats* p, bool up) {
+HWY_INLINE std::uint32_t in_column(const ClosestBoxes& boxes, const Floats* p, bool up) {
   const auto holds = [&](std::size_t c) HWY_ATTR {
     return (wide_load<Floats>(boxes.low[c]) <= p[c]) & (p[c] <= wide_load<Floats>(boxes.high[c]));
   };
@@ -391,16 +390,16 @@ HWY_INLINE std::uint32_t in_column(const plan::ClosestBoxes& boxes, const Floats
   return bits(holds(0) & holds(1) & ahead);
 }
 
-void Column(const plan::ClosestTree& tree, const Vec3& point, bool up, std::vector<std::uint32_t>& faces) {
+void Column(const ClosestTree& tree, const Vec3& point, bool up, std::vector<std::uint32_t>& faces) {
   const auto local = tree.local(point);
   const Floats p[3] = {wide_set<Floats>(local[0]), wide_set<Floats>(local[1]), wide_set<Floats>(local[2])};
-  std::int32_t stack[plan::closest_stack];
+  std::int32_t stack[closest_stack];
   std::size_t count = 0;
   stack[count++] = 0;
   while (count) {
     const std::int32_t at = stack[--count];
     if (at >= 0) {
-      const plan::ClosestNode& node = tree.nodes[std::size_t(at)];
+      const ClosestNode& node = tree.nodes[std::size_t(at)];
       for (std::uint32_t which = in_column(node.boxes, p, up); which; which &= which - 1)
         stack[count++] = node.child[std::countr_zero(which)];
     } else {
@@ -411,34 +410,34 @@ void Column(const plan::ClosestTree& tree, const Vec3& point, bool up, std::vect
   }
 }
 
-} // namespace cowgpu::cpu::HWY_NAMESPACE
+} // namespace cowgpu::plan::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 
 HWY_EXPORT(Packet);
 HWY_EXPORT(Single);
 HWY_EXPORT(Decide);
 HWY_EXPORT(Column);
 
-void closest_packet(const plan::ClosestTree& tree, const Vec3* points, std::size_t count, WarmSlots& warm,
+void closest_packet(const ClosestTree& tree, const Vec3* points, std::size_t count, WarmSlots& warm,
                     std::uint32_t* faces) {
   HWY_DYNAMIC_DISPATCH(Packet)(tree, points, count, warm, faces);
 }
 
-std::uint32_t closest_single(const plan::ClosestTree& tree, const Vec3& point, double below, std::uint32_t warm_slot) {
+std::uint32_t closest_single(const ClosestTree& tree, const Vec3& point, double below, std::uint32_t warm_slot) {
   return HWY_DYNAMIC_DISPATCH(Single)(tree, point, below, warm_slot);
 }
 
-void closest_of(const plan::ClosestTree& tree, const Vec3* points, std::size_t count,
-                std::span<const std::uint32_t> slots, std::span<const std::uint32_t> masks, std::uint32_t* faces) {
+void closest_of(const ClosestTree& tree, const Vec3* points, std::size_t count, std::span<const std::uint32_t> slots,
+                std::span<const std::uint32_t> masks, std::uint32_t* faces) {
   HWY_DYNAMIC_DISPATCH(Decide)(tree, points, count, slots, masks, faces);
 }
 
-void column_faces(const plan::ClosestTree& tree, const Vec3& point, bool up, std::vector<std::uint32_t>& faces) {
+void column_faces(const ClosestTree& tree, const Vec3& point, bool up, std::vector<std::uint32_t>& faces) {
   HWY_DYNAMIC_DISPATCH(Column)(tree, point, up, faces);
 }
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan
 #endif // HWY_ONCE

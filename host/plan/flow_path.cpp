@@ -1,4 +1,4 @@
-#include "host/cpu/flow_path.hpp"
+#include "host/plan/flow_path.hpp"
 
 #include "host/reference/flow.hpp"
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 namespace {
 
 // Lengths relative to the body's diagonal. Next to the surface, where flows off edges start, they go with the distance.
@@ -500,4 +500,4 @@ void FlowPath::go_on(View* known) {
   begin_slide(view);
 }
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 
-inline constexpr std::size_t packet = plan::closest_width;
+inline constexpr std::size_t packet = closest_width;
 
 /// Slots of the tree whose triangles bound the next answers: the last ones.
 struct WarmSlots {
@@ -21,21 +21,21 @@ struct WarmSlots {
 };
 
 /// The closest faces of up to a packet of points, which are faster near each other. All must be within
-/// plan::closest_far of the tree's middle. Where several faces are equally near in double precision, the least.
-void closest_packet(const plan::ClosestTree& tree, const Vec3* points, std::size_t count, WarmSlots& warm,
+/// closest_far of the tree's middle. Where several faces are equally near in double precision, the least.
+void closest_packet(const ClosestTree& tree, const Vec3* points, std::size_t count, WarmSlots& warm,
                     std::uint32_t* faces);
 
 /// The closest face of one point, anywhere: the same face as in a packet. Only faces nearer than `below` are looked for;
 /// no_face if there is none. `warm_slot`: a slot that may hold a near face, or no_face.
-std::uint32_t closest_single(const plan::ClosestTree& tree, const Vec3& point, double below, std::uint32_t warm_slot);
+std::uint32_t closest_single(const ClosestTree& tree, const Vec3& point, double below, std::uint32_t warm_slot);
 
 /// Of up to four points the closest faces among candidates: `slots`, each with a mask of the points it is one for.
 /// Every point must have one; where several are equally near in double precision, the least face.
 inline constexpr std::size_t most_decided = 4;
-void closest_of(const plan::ClosestTree& tree, const Vec3* points, std::size_t count,
-                std::span<const std::uint32_t> slots, std::span<const std::uint32_t> masks, std::uint32_t* faces);
+void closest_of(const ClosestTree& tree, const Vec3* points, std::size_t count, std::span<const std::uint32_t> slots,
+                std::span<const std::uint32_t> masks, std::uint32_t* faces);
 
 /// Appends the faces whose boxes meet the half line from the point along +z (`up`) or -z, perhaps a few more.
-void column_faces(const plan::ClosestTree& tree, const Vec3& point, bool up, std::vector<std::uint32_t>& faces);
+void column_faces(const ClosestTree& tree, const Vec3& point, bool up, std::vector<std::uint32_t>& faces);
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

@@ -13,13 +13,15 @@
 #include <span>
 #include <vector>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
+
+/// Bytes of a distance field and of one call of so many queries, their result included.
+std::uint64_t distance_field_bytes(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries);
 
 class ClosestCall {
 public:
   /// Sorts the queries. Throws as DistanceField::closest does. Tree and queries must outlive the call.
-  ClosestCall(const plan::ClosestTree& tree, std::span<const Vec3> queries, const ClosestOptions& options,
-              unsigned threads);
+  ClosestCall(const ClosestTree& tree, std::span<const Vec3> queries, const ClosestOptions& options, unsigned threads);
 
   /// The queries along the Morton curve.
   std::span<const std::uint32_t> order() const { return order_; }
@@ -41,7 +43,7 @@ private:
   void answer(std::span<const std::uint32_t> ids, std::size_t first, const FindFaces& find);
   std::uint64_t set_signs(std::span<const Vec3> points, const double* distances, std::span<const std::uint32_t> ids);
 
-  const plan::ClosestTree& tree_;
+  const ClosestTree& tree_;
   std::span<const Vec3> queries_;
   unsigned threads_;
   std::chrono::steady_clock::time_point start_;
@@ -51,4 +53,4 @@ private:
   std::atomic<std::uint64_t> rays_ = 0;
 };
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan

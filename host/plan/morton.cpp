@@ -1,11 +1,12 @@
-#include "host/cpu/closest.hpp"
+#include "host/plan/morton.hpp"
+
 #include "host/parallel.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-namespace cowgpu::cpu {
+namespace cowgpu::plan {
 namespace {
 
 constexpr int key_bits = 30, digit_bits = 10;
@@ -61,4 +62,4 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points, const Vec3
   return order;
 }
 
-} // namespace cowgpu::cpu
+} // namespace cowgpu::plan
