@@ -2,13 +2,15 @@
 #pragma once
 
 #include "host/coefficients.hpp"
+#include "host/device_facts.hpp"
 #include "host/distance_field.hpp"
 #include "host/flow.hpp"
 #include "host/image.hpp"
-#include "host/kernel_time.hpp"
+#include "host/moment_problem.hpp"
 #include "host/monitor.hpp"
 #include "host/potential.hpp"
 #include "host/render.hpp"
+#include "host/run_report.hpp"
 #include "host/sphere_samples.hpp"
 #include "host/sphere_transform.hpp"
 #include "host/types.hpp"
@@ -20,55 +22,6 @@
 #include <vector>
 
 namespace cowgpu {
-
-/// Default of MomentProblem::cut_off: what is left out is bounded by a tenth of a double's rounding unit.
-inline constexpr double default_cut_off = 1e-17;
-
-/// Largest degree the recursions are proven free of overflow for.
-inline constexpr int largest_degree = 4096;
-
-/// Input of the verb `moments`.
-struct MomentProblem {
-  std::span<const Vec3> vertices;   ///< mesh coordinates
-  std::span<const Face> faces;      ///< the surface's faces, or any part of them (moments add)
-  Vec3 origin = Vec3::Zero();       ///< mesh coordinates
-  double reference_radius = 1;      ///< R > 0, at least the distance of every vertex used from `origin`
-  double density = 1;               ///< mass per cubed length unit
-  int lmax = 0;                     ///< 0 ... largest_degree
-  double cut_off = default_cut_off; ///< allowed error per degree, relative to degree_bound(); 0: leave out only what
-                                    ///< would underflow
-};
-
-/// What a device is and can do, in words and plain numbers.
-struct DeviceFacts {
-  std::string name;   ///< "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string type;   ///< "discrete", "integrated", "virtual", "software", "cpu" or "other"
-  std::string driver; ///< name and version of the driver, or the instruction set
-  std::string api;    ///< "Vulkan 1.3.230", "native"
-  bool fp64 = true;
-  bool usable = true;               ///< has all that cowgpu needs
-  std::uint32_t subgroup = 1;       ///< lanes that run in step
-  std::uint64_t memory = 0;         ///< bytes of the largest device-local heap (0: not known)
-  std::uint64_t largest_buffer = 0; ///< bytes one shader binding may span (0: no limit)
-  std::uint32_t shared_memory = 0;  ///< bytes of memory shared by a workgroup
-  unsigned threads = 1;             ///< threads of the CPU path
-};
-
-/// What a verb did, beside its result.
-struct RunReport {
-  double seconds = 0;              ///< wall time of the verb
-  double setup_seconds = 0;        ///< the part of `seconds` for planning, pairing, sorting on the host
-  double elements = 0;             ///< (l, m) entries evaluated, summed over pairs of triangles
-  double full_elements = 0;        ///< the same without the cut-off
-  std::uint64_t pairs = 0;         ///< pairs (and leftover single triangles) of the plan
-  std::vector<KernelTime> kernels; ///< empty on the CPU path
-};
-
-/// Memory a verb needs, for --dry-run: bytes on the host, bytes on the device.
-struct MemoryNeed {
-  std::uint64_t host = 0;
-  std::uint64_t device = 0;
-};
 
 /// An engine: the CPU, or one Vulkan device.
 class Backend {

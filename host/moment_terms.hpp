@@ -1,7 +1,9 @@
 // Moments by a second recursion, and how large the triangles' shares in them are.
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/coefficients.hpp"
+#include "host/moment_problem.hpp"
+#include "host/monitor.hpp"
 
 #include <vector>
 

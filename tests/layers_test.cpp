@@ -10,31 +10,34 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What each folder may include, itself aside. Headers directly in host/ are "host".
+// What each room may include, itself aside. A folder is a room; so is host/backend.hpp, the verbs, with what makes them out of
+// others; the other headers directly in host/ are the nouns, "host".
 const std::map<std::string, std::set<std::string>> allowed = {
     {"shaders", {}},
     {"engine", {"shaders"}},
     {"engine/kernels", {"engine", "shaders"}},
     {"host", {}},
+    {"host/backend", {"host"}},
     {"host/plan", {"host"}},
     {"host/reference", {"host"}},
-    {"host/cpu", {"host", "host/plan", "host/reference"}},
-    {"host/gpu", {"host", "host/plan", "engine", "engine/kernels"}},
+    {"host/cpu", {"host/backend", "host", "host/plan", "host/reference"}},
+    {"host/gpu", {"host/backend", "host", "host/plan", "engine", "engine/kernels"}},
     {"host/mesh", {"host", "host/plan"}},
     {"host/io", {"host", "host/map", "host/mesh", "host/spectrum", "host/flow"}},
-    {"host/map", {"host", "host/mesh"}},
-    {"host/spectrum", {"host", "host/mesh", "host/map", "host/plan", "host/reference"}},
-    {"host/flow", {"host", "host/mesh", "host/map", "host/spectrum"}},
-    {"host/physics", {"host", "host/mesh", "host/io", "host/spectrum", "host/reference"}},
+    {"host/map", {"host/backend", "host", "host/mesh"}},
+    {"host/spectrum", {"host/backend", "host", "host/mesh", "host/map", "host/plan", "host/reference"}},
+    {"host/flow", {"host/backend", "host", "host/mesh", "host/map", "host/spectrum"}},
+    {"host/physics", {"host/backend", "host", "host/mesh", "host/io", "host/spectrum", "host/reference"}},
     {"host/plot", {"host", "host/io"}},
     {"host/figures",
-     {"host", "host/mesh", "host/map", "host/spectrum", "host/flow", "host/physics", "host/report", "host/plot"}},
+     {"host/backend", "host", "host/mesh", "host/map", "host/spectrum", "host/flow", "host/physics", "host/report",
+      "host/plot"}},
     {"host/report",
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/plot"}},
     {"host/reproduce", {"host", "host/io", "host/spectrum", "host/physics", "host/report"}},
     {"host/cli",
-     {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/report",
-      "host/plan", "host/plot", "host/figures", "host/reproduce"}},
+     {"host/backend", "host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics",
+      "host/report", "host/plan", "host/plot", "host/figures", "host/reproduce"}},
 };
 
 struct Include {
@@ -57,13 +60,18 @@ std::vector<Include> project_includes(const fs::path& root) {
   return found;
 }
 
+// The room of a file or of what a line includes.
+std::string room(const fs::path& path) {
+  return path == "host/backend.hpp" ? "host/backend" : path.parent_path().string();
+}
+
 } // namespace
 
-TEST_CASE("includes point one way between the folders", "[layers]") {
+TEST_CASE("includes point one way between the rooms", "[layers]") {
   const auto includes = project_includes(COWGPU_SOURCE);
   REQUIRE(includes.size() > 50);
   for (const Include& include : includes) {
-    const std::string from = fs::path(include.from).parent_path(), to = fs::path(include.to).parent_path();
+    const std::string from = room(include.from), to = room(include.to);
     INFO(include.from << ": " << include.line);
     REQUIRE(allowed.count(from) == 1);
     CHECK((from == to || allowed.at(from).count(to) == 1));

@@ -1,7 +1,10 @@
 // CPU path of the stage `moments`: all cores, several pairs of triangles per SIMD group.
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/coefficients.hpp"
+#include "host/moment_problem.hpp"
+#include "host/monitor.hpp"
+#include "host/run_report.hpp"
 
 namespace cowgpu::cpu {
 

@@ -1,8 +1,10 @@
 // The CPU path of the verb `potential`: vectors of points run the recursion and sum all sets at once.
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/monitor.hpp"
 #include "host/plan/potential.hpp"
+#include "host/potential.hpp"
+#include "host/run_report.hpp"
 
 namespace cowgpu::cpu {
 

@@ -1,7 +1,13 @@
 // CPU path of the stage `sample`: bands of rings on all cores, each scanned triangle by triangle.
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/monitor.hpp"
+#include "host/run_report.hpp"
+#include "host/sphere_grid.hpp"
+#include "host/sphere_samples.hpp"
+#include "host/types.hpp"
+
+#include <span>
 
 namespace cowgpu::cpu {
 

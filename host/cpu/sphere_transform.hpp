@@ -1,7 +1,8 @@
 // The CPU path of the verbs `analyse` and `synthesise`.
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/run_report.hpp"
+#include "host/sphere_transform.hpp"
 
 #include <memory>
 

@@ -32,7 +32,9 @@
 // below cut_off times the sum over all triangles: the error is then at most cut_off B_l with B_l of degree_bound().
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/coefficients.hpp"
+#include "host/moment_problem.hpp"
+#include "host/run_report.hpp"
 
 #include <cstdint>
 #include <vector>

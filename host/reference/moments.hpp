@@ -1,8 +1,10 @@
 // Reference of the stage `moments`: plain scalar code on any number type, the oracle of both fast paths.
 #pragma once
 
-#include "host/backend.hpp"
 #include "host/determinant.hpp"
+#include "host/coefficients.hpp"
+#include "host/moment_problem.hpp"
+#include "host/monitor.hpp"
 #include "host/parallel.hpp"
 
 #include <algorithm>

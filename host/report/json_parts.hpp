@@ -1,7 +1,7 @@
 // Parts that several JSON documents share.
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/device_facts.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -1,10 +1,12 @@
 // Everything one `expand` found out, ready to be shown or written.
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/coefficients.hpp"
+#include "host/device_facts.hpp"
 #include "host/mesh/body.hpp"
 #include "host/mesh/tensors.hpp"
 #include "host/report/surface_result.hpp"
+#include "host/run_report.hpp"
 #include "host/spectrum/verify.hpp"
 
 #include <functional>

@@ -18,7 +18,6 @@
 // cancel. Moments about a far origin are moved there, and their errors with them (host/spectrum/translate.hpp).
 #pragma once
 
-#include "host/backend.hpp"
 #include "host/moment_terms.hpp"
 
 #include <span>

@@ -11,7 +11,8 @@
 // sqrt(2l+1) C(l,k) (r/|d|)^k |d|^l B_0 to the norm of degree l, so that a few degrees k are enough.
 #pragma once
 
-#include "host/backend.hpp"
+#include "host/coefficients.hpp"
+#include "host/moment_problem.hpp"
 
 #include <optional>
 #include <span>
