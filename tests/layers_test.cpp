@@ -18,7 +18,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"engine/kernels", {"engine", "shaders"}},
     {"host", {}},
     {"host/backend", {"host"}},
-    {"host/plan", {"host"}},
+    {"host/plan", {"host", "host/reference"}},
     {"host/reference", {"host"}},
     {"host/cpu", {"host/backend", "host", "host/plan", "host/reference"}},
     {"host/gpu", {"host/backend", "host", "host/plan", "engine", "engine/kernels"}},
