@@ -437,7 +437,7 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
 
 } // namespace
 
-Solve add_potential(CLI::App& command, Common& common) {
+Solve add_potential(Command& command, Common& common) {
   const auto options = std::make_shared<Options>();
   command
       .add_option("--at", options->places.at,
@@ -472,7 +472,7 @@ Solve add_potential(CLI::App& command, Common& common) {
   command
       .add_option("--inside", options->inside,
                   "Points inside the sphere that holds the body: refuse, or exact, the polyhedron's closed form")
-      ->check(CLI::IsMember({"refuse", "exact"}))
+      ->check(one_of({"refuse", "exact"}))
       ->capture_default_str();
   command.add_flag("--exact", options->exact,
                    "The polyhedron's closed form everywhere, or where it is nearer to the truth (far away) its series");
