@@ -13,7 +13,7 @@
 #include "host/reference/closest.hpp"
 #include "tests/support/cgal_distance.hpp"
 
-#include "host/cli/command_line.hpp"
+#include "bench/command_line.hpp"
 #include <Eigen/Geometry>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -271,19 +271,15 @@ private:
 int main(int argc, char** argv) {
   using namespace cowgpu;
   bench::Options options;
-  CLI::App app("Verifies and times closest points against CGAL's and Embree's.");
+  cli::CommandLine app("closest_bench", "Verifies and times closest points against CGAL's and Embree's.");
   app.add_option("mesh", options.mesh, "a closed mesh: OFF, benchmark or builtin:...")->capture_default_str();
-  app.add_option("--queries", options.queries, "of each kind")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--runs", options.runs, "calls of each way")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--queries", options.queries, "of each kind")->check(cli::positive_number())->capture_default_str();
+  app.add_option("--runs", options.runs, "calls of each way")->check(cli::positive_number())->capture_default_str();
   app.add_option("--threads", options.threads, "0: all");
   app.add_option("--instruction-set", options.instruction_set, "the widest to use: AVX3, AVX2, SSE4, SSSE3")
-      ->check(CLI::IsMember({"AVX3", "AVX2", "SSE4", "SSSE3"}));
+      ->check(cli::one_of({"AVX3", "AVX2", "SSE4", "SSSE3"}));
   app.add_flag("--json", options.json, "a JSON document in place of the text");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto end = bench::read_command_line(app, argc, argv)) return *end;
   try {
     bench::use_instruction_set(options.instruction_set);
     return bench::Bench(options).run();

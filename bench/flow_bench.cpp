@@ -9,7 +9,7 @@
 #include "host/mesh/triangle_surface.hpp"
 #include "host/spectrum/surface_distance.hpp"
 
-#include "host/cli/command_line.hpp"
+#include "bench/command_line.hpp"
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -219,26 +219,22 @@ private:
 int main(int argc, char** argv) {
   using namespace cowgpu;
   bench::Options options;
-  CLI::App app("Verifies and times the distance's flow.");
+  cli::CommandLine app("flow_bench", "Verifies and times the distance's flow.");
   app.add_option("mesh", options.mesh, "a closed mesh: OFF, benchmark or builtin:...")->capture_default_str();
-  app.add_option("--points", options.points, "on the CPU path")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--points", options.points, "on the CPU path")->check(cli::positive_number())->capture_default_str();
   app.add_option("--vulkan-points", options.vulkan_points, "on the Vulkan path, and on the CPU beside it")
-      ->check(CLI::PositiveNumber)
+      ->check(cli::positive_number())
       ->capture_default_str();
-  app.add_option("--time", options.time, "to flow for")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--time", options.time, "to flow for")->check(cli::positive_number())->capture_default_str();
   app.add_option("--tolerance", options.tolerance, "error per time on the medial axis")->capture_default_str();
-  app.add_option("--runs", options.runs, "flows of each way")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--runs", options.runs, "flows of each way")->check(cli::positive_number())->capture_default_str();
   app.add_option("--threads", options.threads, "of the CPU path; 0: all");
   app.add_option("--device", options.device, "Vulkan device: auto, an index, a part of its name, or none")
       ->capture_default_str();
   app.add_option("--instruction-set", options.instruction_set, "the widest to use: AVX3, AVX2, SSE4, SSSE3")
-      ->check(CLI::IsMember({"AVX3", "AVX2", "SSE4", "SSSE3"}));
+      ->check(cli::one_of({"AVX3", "AVX2", "SSE4", "SSSE3"}));
   app.add_flag("--json", options.json, "a JSON document in place of the text");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto end = bench::read_command_line(app, argc, argv)) return *end;
   try {
     bench::use_instruction_set(options.instruction_set);
     return bench::Bench(options).run();

@@ -14,7 +14,7 @@
 #include "host/spectrum/expand_surface.hpp"
 #include "host/spectrum/paper_tables.hpp"
 
-#include "host/cli/command_line.hpp"
+#include "bench/command_line.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -178,20 +178,16 @@ private:
 int main(int argc, char** argv) {
   using namespace cowgpu;
   bench::Options options;
-  CLI::App app("Verifies and times maps to the sphere and the expansion of surfaces.");
+  cli::CommandLine app("map_bench", "Verifies and times maps to the sphere and the expansion of surfaces.");
   app.add_option("mesh", options.mesh, "as `cowgpu` takes it");
-  app.add_option("--split", options.split, "cut every triangle into four so many times")->check(CLI::Range(0, 8));
-  app.add_option("--methods", options.methods, "of harmonic, stretch")->check(CLI::IsMember({"harmonic", "stretch"}));
-  app.add_option("--lmax", options.lmax, "degree of the expansion")->check(CLI::Range(0, largest_surface_degree));
-  app.add_option("--runs", options.runs, "calls of each case")->check(CLI::PositiveNumber);
+  app.add_option("--split", options.split, "cut every triangle into four so many times")->check(cli::in_range(0, 8));
+  app.add_option("--methods", options.methods, "of harmonic, stretch")->check(cli::one_of({"harmonic", "stretch"}));
+  app.add_option("--lmax", options.lmax, "degree of the expansion")->check(cli::in_range(0, largest_surface_degree));
+  app.add_option("--runs", options.runs, "calls of each case")->check(cli::positive_number());
   app.add_option("--threads", options.threads, "of the CPU path; 0: all");
   app.add_option("--device", options.device, "Vulkan device: auto, none, an index, or a part of its name");
   app.add_flag("--json", options.json, "the figures as JSON");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto end = bench::read_command_line(app, argc, argv)) return *end;
   try {
     return bench::Bench(options).run();
   } catch (const Error& error) {

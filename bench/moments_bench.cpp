@@ -13,7 +13,7 @@
 #include "host/reference/moments.hpp"
 #include "tests/support/bound_errors.hpp"
 
-#include "host/cli/command_line.hpp"
+#include "bench/command_line.hpp"
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -411,23 +411,20 @@ private:
 int main(int argc, char** argv) {
   using namespace cowgpu;
   bench::Options options;
-  CLI::App app("Verifies and times the stage moments: against a lattice quadrature, and alone.");
+  cli::CommandLine app("moments_bench",
+                       "Verifies and times the stage moments: against a lattice quadrature, and alone.");
   app.add_option("mesh", options.mesh, "a mesh file or a name; without it cow.off of the catalogue, or builtin:cow");
   app.add_flag("--quick", options.quick, "three runs of the short cases");
   app.add_flag("--json", options.json, "print a JSON document");
   app.add_flag("--shapes", options.shapes, "time the layouts of the Vulkan kernels instead");
-  app.add_option("--runs", options.runs, "runs of each case")->check(CLI::PositiveNumber);
+  app.add_option("--runs", options.runs, "runs of each case")->check(cli::positive_number());
   app.add_option("--device", options.gpu.device, "Vulkan device: auto, an index, or a part of its name");
   app.add_option("--levels", options.gpu.levels, "degrees a sweep of the Vulkan kernel advances");
   app.add_option("--workgroups", options.gpu.workgroups, "workgroups of the Vulkan kernel");
   app.add_flag("--rows-in-buffer", options.gpu.rows_in_buffer, "recursion rows in device memory");
   app.add_option("--instruction-set", options.instruction_set, "the widest the CPU path may use")
-      ->check(CLI::IsMember({"AVX3", "AVX2", "SSE4", "SSSE3"}));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+      ->check(cli::one_of({"AVX3", "AVX2", "SSE4", "SSSE3"}));
+  if (const auto end = bench::read_command_line(app, argc, argv)) return *end;
   try {
     bench::use_instruction_set(options.instruction_set);
     return bench::Bench(options).run();

@@ -6,7 +6,7 @@
 #include "host/parallel.hpp"
 #include "host/reference/potential.hpp"
 
-#include "host/cli/command_line.hpp"
+#include "bench/command_line.hpp"
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -119,20 +119,21 @@ private:
 } // namespace cowgpu::bench
 
 int main(int argc, char** argv) {
-  cowgpu::bench::Options options;
-  CLI::App app("Verifies and times the verb potential");
+  using namespace cowgpu;
+  bench::Options options;
+  cli::CommandLine app("potential_bench", "Verifies and times the verb potential");
   app.add_option("--degrees", options.degrees, "Degrees")
       ->delimiter(',')
-      ->check(CLI::Range(0, cowgpu::largest_potential_degree));
-  app.add_option("--points", options.points, "Points")->check(CLI::Range(1, 100000000));
-  app.add_option("--runs", options.runs, "Runs; medians are shown")->check(CLI::Range(1, 1000));
+      ->check(cli::in_range(0, largest_potential_degree));
+  app.add_option("--points", options.points, "Points")->check(cli::in_range(1, 100000000));
+  app.add_option("--runs", options.runs, "Runs; medians are shown")->check(cli::in_range(1, 1000));
   app.add_option("--threads", options.threads, "Of the CPU path; 0: all");
   app.add_flag("--cpu", options.cpu_only, "The CPU path alone");
   app.add_flag("--json", options.json, "As JSON");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end = bench::read_command_line(app, argc, argv)) return *end;
   try {
-    return cowgpu::bench::Bench(options).run();
-  } catch (const cowgpu::Error& error) {
+    return bench::Bench(options).run();
+  } catch (const Error& error) {
     fmt::print(stderr, "potential_bench: {}\n", error.what());
     return 1;
   }

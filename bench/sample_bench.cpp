@@ -7,7 +7,7 @@
 #include "host/reference/sample.hpp"
 #include "tests/support/mapped_meshes.hpp"
 
-#include "host/cli/command_line.hpp"
+#include "bench/command_line.hpp"
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -160,17 +160,13 @@ private:
 int main(int argc, char** argv) {
   using namespace cowgpu;
   bench::Options options;
-  CLI::App app("Verifies and times the sampling of maps to the sphere.");
-  app.add_option("--lmax", options.lmax, "degree of the Gauss-Legendre grid")->check(CLI::NonNegativeNumber);
-  app.add_option("--runs", options.runs, "calls of each case")->check(CLI::PositiveNumber);
+  cli::CommandLine app("sample_bench", "Verifies and times the sampling of maps to the sphere.");
+  app.add_option("--lmax", options.lmax, "degree of the Gauss-Legendre grid")->check(cli::non_negative_number());
+  app.add_option("--runs", options.runs, "calls of each case")->check(cli::positive_number());
   app.add_option("--threads", options.threads, "of the CPU path; 0: all");
   app.add_option("--device", options.device, "Vulkan device: auto, none, an index, or a part of its name");
   app.add_option("--map", options.maps, "mesh files whose vertices lie on the unit sphere, beside the built-in maps");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto end = bench::read_command_line(app, argc, argv)) return *end;
   try {
     return bench::Bench(options).run();
   } catch (const Error& error) {

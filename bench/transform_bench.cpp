@@ -7,7 +7,7 @@
 #include "host/spectrum/roundtrip.hpp"
 #include "tests/support/libsharp.hpp"
 
-#include "host/cli/command_line.hpp"
+#include "bench/command_line.hpp"
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -387,20 +387,16 @@ void set_up_openmp(char** argv) {
 int main(int argc, char** argv) {
   using namespace cowgpu;
   bench::Options options;
-  CLI::App app("Verifies and times the sphere transforms, against libsharp.");
+  cli::CommandLine app("transform_bench", "Verifies and times the sphere transforms, against libsharp.");
   app.add_option("--lmax", options.degrees, "degrees")->delimiter(',');
   app.add_option("--fields", options.fields, "numbers of fields")->delimiter(',');
-  app.add_option("--runs", options.runs, "calls of each case")->check(CLI::PositiveNumber);
+  app.add_option("--runs", options.runs, "calls of each case")->check(cli::positive_number());
   app.add_option("--device", options.device, "Vulkan device: auto, none, an index, or a part of its name");
   app.add_option("--instruction-set", options.instruction_set, "the widest the CPU path may use")
-      ->check(CLI::IsMember({"AVX3", "AVX2", "SSE4", "SSSE3"}));
+      ->check(cli::one_of({"AVX3", "AVX2", "SSE4", "SSSE3"}));
   app.add_flag("--json", options.json, "print a JSON document");
   app.add_flag("--growth", options.growth, "cost and memory to degree 4096 instead, without libsharp");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto end = bench::read_command_line(app, argc, argv)) return *end;
   try {
     bench::set_up_openmp(argv);
     bench::use_instruction_set(options.instruction_set);

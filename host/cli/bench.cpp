@@ -109,9 +109,9 @@ void run(const Options& options, Common& common) {
 
 } // namespace
 
-void add_bench(CLI::App& app, Common& common) {
+void add_bench(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("bench", "Time the CPU and the Vulkan path on a mesh, verified first");
+  Command* command = app.add_subcommand("bench", "Time the CPU and the Vulkan path on a mesh, verified first");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degrees, separated by commas")
       ->delimiter(',')

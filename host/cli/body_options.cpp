@@ -93,7 +93,7 @@ Part load_part(const std::string& text, const Placement& placement, bool charge)
 
 } // namespace
 
-void add_body_options(CLI::App& command, BodyOptions& options) {
+void add_body_options(Command& command, BodyOptions& options) {
   command.add_option("mesh", options.mesh, mesh_help())->type_name("MESH")->capture_default_str();
   command
       .add_option("--origin", options.origin,

@@ -23,7 +23,7 @@ struct BodyOptions {
 };
 
 /// Adds MESH, --origin, --density, --length-unit, --length, --axes, --rotate, --part and those of mend_options.hpp.
-void add_body_options(CLI::App& command, BodyOptions& options);
+void add_body_options(Command& command, BodyOptions& options);
 
 /// Reads mesh and parts, places them and measures the body; sentences about what was done go to `notes`. Throws
 /// Error(bad_argument) for options that mean nothing or do not go together, and what load_mended(), ClosedSurface::from() and

@@ -29,56 +29,50 @@ struct Common {
   ProgressStyle style() const { return progress_style(progress, quiet); }
 };
 
-void add_expand(CLI::App& app, Common& common);
-void add_validate(CLI::App& app, Common& common);
-void add_inspect(CLI::App& app, Common& common);
-void add_devices(CLI::App& app, Common& common);
-void add_render(CLI::App& app, Common& common);
-void add_bench(CLI::App& app, Common& common);
-void add_transform(CLI::App& app, Common& common);
-void add_spectrum(CLI::App& app, Common& common);
-void add_convert(CLI::App& app, Common& common);
-void add_diff(CLI::App& app, Common& common);
-void add_map(CLI::App& app, Common& common);
-void add_reconstruct(CLI::App& app, Common& common);
-void add_report(CLI::App& app, Common& common);
-void add_inflate(CLI::App& app, Common& common);
-void add_distance(CLI::App& app, Common& common);
-void add_streamlines(CLI::App& app, Common& common);
-void add_reproduce(CLI::App& app, Common& common);
-void add_figure(CLI::App& app, Common& common);
+void add_expand(Command& app, Common& common);
+void add_validate(Command& app, Common& common);
+void add_inspect(Command& app, Common& common);
+void add_devices(Command& app, Common& common);
+void add_render(Command& app, Common& common);
+void add_bench(Command& app, Common& common);
+void add_transform(Command& app, Common& common);
+void add_spectrum(Command& app, Common& common);
+void add_convert(Command& app, Common& common);
+void add_diff(Command& app, Common& common);
+void add_map(Command& app, Common& common);
+void add_reconstruct(Command& app, Common& common);
+void add_report(Command& app, Common& common);
+void add_inflate(Command& app, Common& common);
+void add_distance(Command& app, Common& common);
+void add_streamlines(Command& app, Common& common);
+void add_reproduce(Command& app, Common& common);
+void add_figure(Command& app, Common& common);
 /// Adds the applications of the multipoles, host/cli/physics.cpp.
-void add_physics(CLI::App& app, Common& common);
-void add_errata(CLI::App& app, Common& common);
+void add_physics(Command& app, Common& common);
+void add_errata(Command& app, Common& common);
 
 /// Adds `meshes` and `meshes add`.
-void add_meshes(CLI::App& app);
+void add_meshes(Command& app);
 
 /// Adds `man` and `completion`, which print the man page and the shell completion of `app`.
-void add_manual(CLI::App& app);
-
-/// Checks of options: a finite number above 0, or one from 0 on.
-CLI::Validator positive_number();
-CLI::Validator non_negative_number();
-/// A text that is not empty: what a shell's variable that is not set would give.
-CLI::Validator not_empty();
+void add_manual(Command& app);
 
 /// Adds `roundtrip` to the command `transform`.
-void add_roundtrip(CLI::App& transform, Common& common);
+void add_roundtrip(Command& transform, Common& common);
 
 /// Adds --threads, --progress and --quiet.
-void add_run_options(CLI::App& command, Common& common);
+void add_run_options(Command& command, Common& common);
 
 /// Adds --device and those.
-void add_common_options(CLI::App& command, Common& common);
+void add_common_options(Command& command, Common& common);
 
 /// Opens what --device names: "cpu", or a Vulkan device. "auto" falls back to the CPU path where there is no loader, no
 /// device or no double precision; `note` then says so. Throws Error(no_loader, no_device, no_fp64, device_failed).
 std::unique_ptr<Backend> open_backend(const Common& common, std::string* note);
 
 /// Adds --grid and --lmax as the transforms have them; `lmax` stays as it is where the option is not given.
-void add_grid_option(CLI::App& command, std::string& grid, const char* what);
-void add_degree_option(CLI::App& command, int& lmax, const char* what);
+void add_grid_option(Command& command, std::string& grid, const char* what);
+void add_degree_option(Command& command, int& lmax, const char* what);
 
 /// Throws Error(too_large) with `advice` where this machine has not so much memory.
 void check_memory(const MemoryNeed& need, const Backend& backend, const char* advice);
@@ -96,7 +90,7 @@ std::optional<Vec3> parse_point(std::string_view text);
 OriginChoice parse_origin(const std::string& text);
 
 /// Adds --normalisation and --phase with their words; `of_what` goes on behind their names in the help: "of OUT".
-void add_convention_options(CLI::App& command, std::string& normalisation, std::string& phase, const char* of_what);
+void add_convention_options(Command& command, std::string& normalisation, std::string& phase, const char* of_what);
 
 /// "orthonormal, with Condon-Shortley phase".
 std::string convention_text(Convention convention);

@@ -5,39 +5,14 @@
 #include "host/io/mesh_source.hpp"
 #include "host/io/shown.hpp"
 #include "host/mesh/builtin.hpp"
+#include "host/number.hpp"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
 namespace cowgpu::cli {
-namespace {
-
-// CLI11's own checks print bounds of 309 digits.
-CLI::Validator number_check(const char* what, bool (*holds)(double)) {
-  return {[what, holds](const std::string& text) {
-            const auto value = read_number(text);
-            if (!value) return fmt::format("{}; it takes {}", number_complaint<double>(text), what);
-            return holds(*value) ? std::string() : fmt::format("{} is not {}", shown(text), what);
-          },
-          ""};
-}
-
-} // namespace
-
-CLI::Validator positive_number() {
-  return number_check("a finite number above 0", [](double value) { return value > 0; });
-}
-
-CLI::Validator not_empty() {
-  return {[](std::string& text) { return std::string(text.empty() ? "the value is empty" : ""); }, ""};
-}
-
-CLI::Validator non_negative_number() {
-  return number_check("a finite number from 0 on", [](double value) { return value >= 0; });
-}
-
-void add_common_options(CLI::App& command, Common& common) {
+void add_common_options(Command& command, Common& common) {
   command
       .add_option("--device", common.device,
                   "Where to compute: auto (the best Vulkan device, else the CPU), cpu, a number or a part of a name "
@@ -46,12 +21,12 @@ void add_common_options(CLI::App& command, Common& common) {
   add_run_options(command, common);
 }
 
-void add_run_options(CLI::App& command, Common& common) {
+void add_run_options(Command& command, Common& common) {
   command.add_option("--threads", common.threads, "Threads of the CPU path (0: all)")
       ->check(in_range(0U, 4096U))
       ->capture_default_str();
   command.add_option("--progress", common.progress, "auto (a line on a terminal), none, or jsonl on stderr")
-      ->check(CLI::IsMember({"auto", "none", "jsonl"}))
+      ->check(one_of({"auto", "none", "jsonl"}))
       ->capture_default_str();
   command.add_flag("--quiet,-q", common.quiet, "Print errors only");
 }
@@ -72,11 +47,11 @@ std::unique_ptr<Backend> open_backend(const Common& common, std::string* note) {
   }
 }
 
-void add_grid_option(CLI::App& command, std::string& grid, const char* what) {
-  command.add_option("--grid", grid, what)->check(CLI::IsMember({"gl", "cc", "dh", "dh1", "f1"}))->type_name("KIND");
+void add_grid_option(Command& command, std::string& grid, const char* what) {
+  command.add_option("--grid", grid, what)->check(one_of({"gl", "cc", "dh", "dh1", "f1"}))->type_name("KIND");
 }
 
-void add_degree_option(CLI::App& command, int& lmax, const char* what) {
+void add_degree_option(Command& command, int& lmax, const char* what) {
   command.add_option("--lmax", lmax, what)->check(in_range(0, largest_grid_degree))->type_name("L");
 }
 
@@ -114,15 +89,15 @@ OriginChoice parse_origin(const std::string& text) {
               fmt::format("--origin {}: it must be com, mesh or three numbers X,Y,Z in mesh coordinates", text));
 }
 
-void add_convention_options(CLI::App& command, std::string& normalisation, std::string& phase, const char* of_what) {
+void add_convention_options(Command& command, std::string& normalisation, std::string& phase, const char* of_what) {
   command
       .add_option(
           "--normalisation", normalisation,
           fmt::format("Normalisation {}: orthonormal, 4pi (geodesy), schmidt, unnormalised (to about degree 150)",
                       of_what))
-      ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
+      ->check(one_of({"orthonormal", "4pi", "schmidt", "unnormalised"}));
   command.add_option("--phase", phase, fmt::format("Phase {}: cs (Condon-Shortley) or none", of_what))
-      ->check(CLI::IsMember({"cs", "none"}));
+      ->check(one_of({"cs", "none"}));
 }
 
 std::string convention_text(Convention convention) {

@@ -154,9 +154,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_convert(CLI::App& app, Common& common) {
+void add_convert(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("convert", "Coefficients in another file format, convention, radius or frame");
+  Command* command = app.add_subcommand("convert", "Coefficients in another file format, convention, radius or frame");
   command
       ->add_option("IN", options->input,
                    "Coefficients, recognised by their content: JSON or CSV (of `expand` or `convert`), netCDF (as "
@@ -172,12 +172,12 @@ void add_convert(CLI::App& app, Common& common) {
       ->type_name("NAME");
   add_convention_options(*command, options->normalisation, options->phase, "of OUT (default: that of IN)");
   command->add_option("--form", options->form, "Form of OUT: real (C, S) or complex (re, im; .json and .csv)")
-      ->check(CLI::IsMember({"real", "complex"}));
+      ->check(one_of({"real", "complex"}));
   command
       ->add_option("--kind", options->kind,
                    "Kind of OUT, where IN is of a body: multipoles (Q_lm / R^l) or potential (C_lm of geodesy; what "
                    ".gfc and .sh hold)")
-      ->check(CLI::IsMember({"multipoles", "potential"}));
+      ->check(one_of({"multipoles", "potential"}));
   command
       ->add_option("--reference-radius", options->reference_radius, "Reference radius of OUT, in the length unit of IN")
       ->type_name("R")
@@ -195,20 +195,19 @@ void add_convert(CLI::App& app, Common& common) {
       ->type_name("ALPHA,BETA,GAMMA")
       ->check(not_empty());
   command->add_option("--angle-unit", options->angle_unit, "Unit of the angles of --rotate: degrees or radians")
-      ->check(CLI::IsMember({"degrees", "radians"}))
+      ->check(one_of({"degrees", "radians"}))
       ->capture_default_str();
   add_degree_option(*command, options->lmax.emplace(-1), "Leave out the degrees above L");
   command
       ->add_option("--input-normalisation", options->input_normalisation,
                    "Normalisation of IN, where it does not say it (default: 4pi)")
-      ->check(CLI::IsMember({"orthonormal", "4pi", "schmidt", "unnormalised"}));
-  command
-      ->add_option("--input-phase", options->input_phase, "Phase of IN, where it does not say it (default: none)")
-      ->check(CLI::IsMember({"cs", "none"}));
+      ->check(one_of({"orthonormal", "4pi", "schmidt", "unnormalised"}));
+  command->add_option("--input-phase", options->input_phase, "Phase of IN, where it does not say it (default: none)")
+      ->check(one_of({"cs", "none"}));
   command->add_flag("--si", options->si,
                     "Lengths of IN are metres and its density is in kg/m^3: GM = 6.6743e-11 m^3/(kg s^2) M");
   add_length_unit_option(*command, options->length_unit, "IN");
-  command->get_option("--si")->excludes("--length-unit");
+  command->get_option("--si")->excludes(command->get_option("--length-unit"));
   add_run_options(*command, common);
   command->footer(
       "Coefficients are of a field on the unit sphere, and it is the same field in every convention. Of multipoles "

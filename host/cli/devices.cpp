@@ -58,9 +58,9 @@ void run(const Options& options) {
 
 } // namespace
 
-void add_devices(CLI::App& app, Common&) {
+void add_devices(Command& app, Common&) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("devices", "List the Vulkan devices and the CPU, and what each can do");
+  Command* command = app.add_subcommand("devices", "List the Vulkan devices and the CPU, and what each can do");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run(*options); });
 }

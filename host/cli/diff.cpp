@@ -131,9 +131,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_diff(CLI::App& app, Common& common) {
+void add_diff(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("diff", "Two files of coefficients, degree by degree");
+  Command* command = app.add_subcommand("diff", "Two files of coefficients, degree by degree");
   command
       ->add_option("A", options->first, "Coefficients of any format that `convert` reads, recognised by their content")
       ->required();

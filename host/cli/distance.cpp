@@ -214,9 +214,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_distance(CLI::App& app, Common& common) {
+void add_distance(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Command* command =
       app.add_subcommand("distance", "Signed distances of points from a surface, and the closest points of it");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->required();
   add_mend_options(*command, options->mending);

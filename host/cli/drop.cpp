@@ -168,7 +168,7 @@ Findings solve(const PhysicsOptions& common, const Options& options, ProgressSty
 
 } // namespace
 
-Solve add_drop(CLI::App& command, Common& program) {
+Solve add_drop(Command& command, Common& program) {
   const auto options = std::make_shared<Options>();
   command.add_option("--height", options->height, "Height of the centre of mass above the ground, with its unit: 10m")
       ->type_name("LENGTH")

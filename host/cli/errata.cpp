@@ -155,8 +155,8 @@ void write_text(const Errata& found) {
 
 } // namespace
 
-void add_errata(CLI::App& app, Common& common) {
-  CLI::App* command = app.add_subcommand("errata", "What is wrong in Higher multipoles of the cow, with both numbers");
+void add_errata(Command& app, Common& common) {
+  Command* command = app.add_subcommand("errata", "What is wrong in Higher multipoles of the cow, with both numbers");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "As JSON (data/schemas/cowgpu.errata.v1.json)");
   command->callback([json, &common] {

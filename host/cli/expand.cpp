@@ -246,9 +246,9 @@ void run(const Options& options, Common& common) {
 
 } // namespace
 
-void add_expand(CLI::App& app, Common& common) {
+void add_expand(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Command* command =
       app.add_subcommand("expand", "Multipole moments of a closed mesh, and its surface over maps to the sphere");
   add_body_options(*command, options->body);
   command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
@@ -264,7 +264,7 @@ void add_expand(CLI::App& app, Common& common) {
       ->add_option("--recipe", options->recipe,
                    "Settings of the harmonic map and the flow: default, or paper (as Higher multipoles of the cow has "
                    "them, about the mesh's origin)")
-      ->check(CLI::IsMember({"default", "paper"}))
+      ->check(one_of({"default", "paper"}))
       ->capture_default_str();
   command
       ->add_option(
@@ -272,21 +272,20 @@ void add_expand(CLI::App& app, Common& common) {
           "Take the map of --of from FILE.ply, which `cowgpu map MESH -o FILE.ply` wrote, instead of making it")
       ->check([](const std::string& path) { return std::string(path.empty() ? "the name is empty" : ""); })
       ->type_name("FILE");
-  CLI::Option* time =
-      command
-          ->add_option("--time", options->time,
-                       "flow: T, how far the body is inflated, in the body's length unit; auto: the least "
-                       "for which it is star-shaped about the origin")
-          ->type_name("auto|T")
-          ->capture_default_str();
-  CLI::Option* sheets =
+  Option* time = command
+                     ->add_option("--time", options->time,
+                                  "flow: T, how far the body is inflated, in the body's length unit; auto: the least "
+                                  "for which it is star-shaped about the origin")
+                     ->type_name("auto|T")
+                     ->capture_default_str();
+  Option* sheets =
       command
           ->add_option("--sheets", options->sheets,
                        "flow: level-set (from a direction back to the surface), or signed (all sheets of the flowed "
                        "surface over it, each with its sign: any T, extrapolated over refinements of the mesh)")
-          ->check(CLI::IsMember({"level-set", "signed"}))
+          ->check(one_of({"level-set", "signed"}))
           ->capture_default_str();
-  CLI::Option* refinements =
+  Option* refinements =
       command
           ->add_option(
               "--refinements", options->refinements,
@@ -295,12 +294,12 @@ void add_expand(CLI::App& app, Common& common) {
           ->check(in_range(1, 5))
           ->type_name("N")
           ->capture_default_str();
-  CLI::Option* grid = command
-                          ->add_option("--flow-grid", options->flow_grid,
-                                       "flow: least degree of the grid on which the level set is met")
-                          ->check(in_range(64, largest_grid_degree))
-                          ->type_name("N")
-                          ->capture_default_str();
+  Option* grid = command
+                     ->add_option("--flow-grid", options->flow_grid,
+                                  "flow: least degree of the grid on which the level set is met")
+                     ->check(in_range(64, largest_grid_degree))
+                     ->type_name("N")
+                     ->capture_default_str();
   command->add_flag("--aliasing", options->aliasing,
                     "Estimate the aliasing of surface expansions, degree by degree (the paper's recipe always does)");
   command
@@ -314,7 +313,7 @@ void add_expand(CLI::App& app, Common& common) {
           "--verify", options->verify,
           "Compute again by a second recursion, and estimate the error of each degree: sample (128 triangles), full "
           "(all), none")
-      ->check(CLI::IsMember({"sample", "full", "none"}))
+      ->check(one_of({"sample", "full", "none"}))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the sample")->capture_default_str();
   command->add_flag("--json", options->json, "The result as JSON on stdout (data/schemas/cowgpu.result.v1.json)");

@@ -198,9 +198,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_figure(CLI::App& app, Common& common) {
+void add_figure(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("figure", "One of the paper's figures, or one it lacks, of any body");
+  Command* command = app.add_subcommand("figure", "One of the paper's figures, or one it lacks, of any body");
   std::vector<std::string> names;
   for (const Figure& figure : figures_known) names.emplace_back(figure.name);
   command
@@ -209,7 +209,7 @@ void add_figure(CLI::App& app, Common& common) {
                    "sphere. definition: what f is. inflation: level sets of the distance. streamlines: of its flow. "
                    "tipping: a ball and the body, and what tips them")
       ->type_name("NAME")
-      ->check(CLI::IsMember(names))
+      ->check(one_of(names))
       ->required();
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
   command->add_option("-o,--output", options->output, "The page: FILE.png or, of lines alone, FILE.svg")
@@ -225,7 +225,7 @@ void add_figure(CLI::App& app, Common& common) {
       ->allow_extra_args(false)
       ->type_name("FILE");
   command->add_option("--recipe", options->recipe, "paper: harmonic map and flow as the paper made them")
-      ->check(CLI::IsMember({"default", "paper"}))
+      ->check(one_of({"default", "paper"}))
       ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degree of the expansions")
       ->check(in_range(8, largest_surface_degree))

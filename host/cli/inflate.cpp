@@ -279,9 +279,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_inflate(CLI::App& app, Common& common) {
+void add_inflate(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  Command* command = app.add_subcommand(
       "inflate", "The body inflated by a distance, and by how much it must be to be star-shaped about a point");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
   add_mend_options(*command, options->mending);
@@ -299,8 +299,7 @@ void add_inflate(CLI::App& app, Common& common) {
                    "FILE.glb or FILE.ply, with {} for the level where there are several, or a folder, for "
                    "inflated-0.05.glb and the like")
       ->type_name("FILE|DIR");
-  command->add_option("--format", options->format, "In a folder: glb (default) or ply")
-      ->check(CLI::IsMember({"glb", "ply"}));
+  command->add_option("--format", options->format, "In a folder: glb (default) or ply")->check(one_of({"glb", "ply"}));
   command
       ->add_option("--cells", options->cells, "Cubes along the longest side of the box in which a level is looked for")
       ->check(in_range(4, 1024))

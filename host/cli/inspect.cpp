@@ -56,9 +56,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_inspect(CLI::App& app, Common& common) {
+void add_inspect(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  Command* command = app.add_subcommand(
       "inspect", "Facts about a mesh: topology, self-intersections, size, what it is fit for; and mends it on demand");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
   add_mend_options(*command, options->mending);

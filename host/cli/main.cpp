@@ -24,8 +24,8 @@ int fail(const char* name, const char* what, int code) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Exact multipole moments of triangle meshes, on the GPU and on the CPU");
-  app.set_version_flag("--version", std::string("cowgpu ") + version);
+  cli::CommandLine app("cowgpu", "Exact multipole moments of triangle meshes, on the GPU and on the CPU");
+  app.set_version(std::string("cowgpu ") + version);
   app.require_subcommand(1);
   app.footer("Exit codes: 0 ok, 1 a numeric check failed, 2 usage, 3 bad input, 4 no or lost device, 5 input/output, "
              "130 interrupted (128 + n by another signal n).\nNumbers are decimal and finite, with a point and perhaps "
@@ -69,30 +69,18 @@ int run(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-') {
     std::string there;
     bool known = false;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-      known = known || command->get_name() == argv[1];
-      there += (there.empty() ? "" : ", ") + command->get_name();
+    for (const std::string& command : app.command_names()) {
+      known = known || command == argv[1];
+      there += (there.empty() ? "" : ", ") + command;
     }
     if (!known)
       return fail(name(Fault::bad_argument).data(),
                   fmt::format("there is no command '{}'; there are {}", argv[1], there).c_str(), 2);
   }
-  try {
-    app.parse(argc, argv);
-    cli::flush_stdout();
-    return common.exit_code;
-  } catch (const CLI::Success& help) {
-    app.exit(help);
-    cli::flush_stdout();
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    std::string command = "cowgpu";
-    for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
-      at = at->get_subcommands().front();
-      command += " " + at->get_name();
-    }
-    return fail(name(Fault::bad_argument).data(), fmt::format("{}; see `{} --help`", error.what(), command).c_str(), 2);
-  }
+  const cli::Parsed parsed = app.parse(argc, argv);
+  if (!parsed.complaint.empty()) return fail(name(Fault::bad_argument).data(), parsed.complaint.c_str(), 2);
+  cli::flush_stdout();
+  return parsed.help ? 0 : common.exit_code;
 }
 
 } // namespace

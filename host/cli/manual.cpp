@@ -1,6 +1,7 @@
 // The man page and the shell completion, from the same option table as --help.
 #include "host/cli/commands.hpp"
 
+#include "host/cli/cli11.hpp"
 #include "host/io/mesh_catalogue.hpp"
 #include "host/mesh/builtin.hpp"
 #include "host/version.hpp"
@@ -184,10 +185,10 @@ complete -F _cowgpu cowgpu
 
 } // namespace
 
-void add_manual(CLI::App& app) {
-  app.add_subcommand("man", "Print the man page, cowgpu(1)")->callback([&app] { write_stdout(man_page(app)); });
+void add_manual(Command& app) {
+  app.add_subcommand("man", "Print the man page, cowgpu(1)")->callback([&app] { write_stdout(man_page(app.app())); });
   app.add_subcommand("completion", "Print the completion for bash: source <(cowgpu completion)")->callback([&app] {
-    write_stdout(bash_completion(app));
+    write_stdout(bash_completion(app.app()));
   });
 }
 

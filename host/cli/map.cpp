@@ -39,7 +39,7 @@ struct Options {
 
 // An option and the method it belongs to.
 struct Belonging {
-  const CLI::Option* option;
+  const Option* option;
   const char* method;
 };
 
@@ -185,9 +185,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_map(CLI::App& app, Common& common) {
+void add_map(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("map", "A map of a mesh of genus 0 to the sphere, and its quality");
+  Command* command = app.add_subcommand("map", "A map of a mesh of genus 0 to the sphere, and its quality");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
   add_mend_options(*command, options->mending);
   command
@@ -196,18 +196,18 @@ void add_map(CLI::App& app, Common& common) {
           "stretch (the default: every part of the body keeps room on the sphere, and no triangle is flipped), "
           "harmonic or smooth (both keep angles, the better the finer the mesh, and shrink limbs to points), or flow "
           "(along the distance's gradient: may fold over itself)")
-      ->check(CLI::IsMember({"harmonic", "stretch", "smooth", "flow"}))
+      ->check(one_of({"harmonic", "stretch", "smooth", "flow"}))
       ->type_name("NAME");
-  CLI::Option* weights = command->add_option("--weights", options->weights, "harmonic: what an edge weighs")
-                             ->check(CLI::IsMember({"cotangent", "mean-value", "tutte"}))
-                             ->capture_default_str();
-  CLI::Option* pole = command
-                          ->add_option("--pole", options->pole,
-                                       "harmonic: the vertex taken out, by its number (from 0), as the nearest to "
-                                       "X,Y,Z, or back (the middle of the top); the polished map is the same from all")
-                          ->type_name("VERTEX|X,Y,Z|back")
-                          ->capture_default_str();
-  CLI::Option* scale =
+  Option* weights = command->add_option("--weights", options->weights, "harmonic: what an edge weighs")
+                        ->check(one_of({"cotangent", "mean-value", "tutte"}))
+                        ->capture_default_str();
+  Option* pole = command
+                     ->add_option("--pole", options->pole,
+                                  "harmonic: the vertex taken out, by its number (from 0), as the nearest to "
+                                  "X,Y,Z, or back (the middle of the top); the polished map is the same from all")
+                     ->type_name("VERTEX|X,Y,Z|back")
+                     ->capture_default_str();
+  Option* scale =
       command
           ->add_option(
               "--disk-scale", options->disk_scale,
@@ -215,36 +215,36 @@ void add_map(CLI::App& app, Common& common) {
               "area to each hemisphere)")
           ->check(positive_number())
           ->type_name("S");
-  CLI::Option* centre = command->add_flag(
-      "--centre", options->centre, "harmonic: only move the mean direction by area to the centre, without polish");
-  CLI::Option* polish = command->add_flag("--polish", options->polish,
-                                          "harmonic: go on until harmonic at the pole too, and fail where that cannot "
-                                          "be done (default: do so, but where it cannot be done only centre)");
-  CLI::Option* no_polish = command->add_flag("--no-polish", options->no_polish,
-                                             "harmonic: stop at the disk's map; its boundary leaves shear round the "
-                                             "pole, and the map depends on the pole");
-  CLI::Option* recipe = command
-                            ->add_option("--recipe", options->recipe,
-                                         "harmonic: paper (the settings behind the published table of the cow)")
-                            ->check(CLI::IsMember({"paper"}))
-                            ->type_name("NAME");
+  Option* centre = command->add_flag("--centre", options->centre,
+                                     "harmonic: only move the mean direction by area to the centre, without polish");
+  Option* polish = command->add_flag("--polish", options->polish,
+                                     "harmonic: go on until harmonic at the pole too, and fail where that cannot "
+                                     "be done (default: do so, but where it cannot be done only centre)");
+  Option* no_polish = command->add_flag("--no-polish", options->no_polish,
+                                        "harmonic: stop at the disk's map; its boundary leaves shear round the "
+                                        "pole, and the map depends on the pole");
+  Option* recipe = command
+                       ->add_option("--recipe", options->recipe,
+                                    "harmonic: paper (the settings behind the published table of the cow)")
+                       ->check(one_of({"paper"}))
+                       ->type_name("NAME");
   scale->excludes(centre)->excludes(polish); // centring undoes any scale
   no_polish->excludes(polish);
-  for (CLI::Option* own : {weights, pole, scale, centre, polish, no_polish}) recipe->excludes(own);
-  CLI::Option* sweeps = command->add_option("--sweeps", options->sweeps, "stretch: relaxations of all vertices")
-                            ->check(in_range(0U, 1000000U))
-                            ->type_name("N")
-                            ->capture_default_str();
-  CLI::Option* lambda = command
-                            ->add_option("--lambda", options->lambda,
-                                         "stretch: weight of the stretch from the body to the sphere; 0.1 makes the "
-                                         "shear less extreme")
-                            ->check(non_negative_number())
-                            ->type_name("L")
-                            ->capture_default_str();
-  CLI::Option* converge =
+  for (Option* own : {weights, pole, scale, centre, polish, no_polish}) recipe->excludes(own);
+  Option* sweeps = command->add_option("--sweeps", options->sweeps, "stretch: relaxations of all vertices")
+                       ->check(in_range(0U, 1000000U))
+                       ->type_name("N")
+                       ->capture_default_str();
+  Option* lambda = command
+                       ->add_option("--lambda", options->lambda,
+                                    "stretch: weight of the stretch from the body to the sphere; 0.1 makes the "
+                                    "shear less extreme")
+                       ->check(non_negative_number())
+                       ->type_name("L")
+                       ->capture_default_str();
+  Option* converge =
       command->add_flag("--converge", options->converge, "stretch: go on to a minimum by Newton's method");
-  CLI::Option* relabellings =
+  Option* relabellings =
       command
           ->add_option("--relabellings", options->relabellings,
                        "stretch: map N copies of the body, numbered and turned at random, as well, and count those "
@@ -252,16 +252,16 @@ void add_map(CLI::App& app, Common& common) {
           ->check(in_range(0U, 10000U))
           ->type_name("N")
           ->capture_default_str();
-  CLI::Option* time = command
-                          ->add_option("--time", options->time,
-                                       "flow: for how long, in the mesh's length unit; auto: until the inflated body "
-                                       "is star-shaped about the origin")
-                          ->type_name("auto|T")
-                          ->capture_default_str();
-  CLI::Option* origin = command
-                            ->add_option("--origin", options->origin,
-                                         "flow: where directions are seen from: com (centre of mass), mesh or X,Y,Z")
-                            ->capture_default_str();
+  Option* time = command
+                     ->add_option("--time", options->time,
+                                  "flow: for how long, in the mesh's length unit; auto: until the inflated body "
+                                  "is star-shaped about the origin")
+                     ->type_name("auto|T")
+                     ->capture_default_str();
+  Option* origin = command
+                       ->add_option("--origin", options->origin,
+                                    "flow: where directions are seen from: com (centre of mass), mesh or X,Y,Z")
+                       ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degree of the grid that the map is judged against")
       ->check(in_range(1, largest_grid_degree))
       ->type_name("L")

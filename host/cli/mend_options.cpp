@@ -5,7 +5,7 @@
 
 namespace cowgpu::cli {
 
-void add_mend_options(CLI::App& command, Mending& mending) {
+void add_mend_options(Command& command, Mending& mending) {
   command
       .add_option("--weld", mending.weld,
                   "Mend: merge vertices within EPS of each other, in the mesh's unit (0: at one point exactly)")

@@ -69,16 +69,16 @@ void add(const std::vector<std::string>& files) {
 
 } // namespace
 
-void add_meshes(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("meshes", "Named bodies: which there are, where from, and which are here");
+void add_meshes(Command& app) {
+  Command* command = app.add_subcommand("meshes", "Named bodies: which there are, where from, and which are here");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "As JSON (data/schemas/cowgpu.meshes.v1.json)");
-  CLI::App* below = command->add_subcommand("add", "Check a mesh of the catalogue and put it where its name finds it");
+  Command* below = command->add_subcommand("add", "Check a mesh of the catalogue and put it where its name finds it");
   const auto files = std::make_shared<std::vector<std::string>>();
   below->add_option("file", *files, "Files whose SHA-256 the catalogue has")->required()->type_name("FILE");
   below->callback([files] { add(*files); });
   command->callback([command, json] {
-    if (!command->get_subcommands().empty()) return;
+    if (command->subcommand_given()) return;
     if (*json)
       write_json();
     else

@@ -64,7 +64,7 @@ constexpr std::array applications = {
 };
 
 // The paper's body, but for what the user says.
-void take_paper_body(CLI::App& command, BodyOptions& body) {
+void take_paper_body(Command& command, BodyOptions& body) {
   if (command.get_option("mesh")->count() == 0) body.mesh = physics::paper::mesh;
   if (is_coefficient_file(body.mesh))
     throw Error(Fault::bad_argument, "--recipe paper is about the paper's mesh, and this is a file of coefficients");
@@ -83,8 +83,8 @@ void keep_paper_to_its_body(const PhysicsOptions& options, physics::Findings& fi
                                        body.mesh));
 }
 
-void add_application(CLI::App& app, Common& common, const Application& application) {
-  CLI::App* command = app.add_subcommand(application.name, application.summary);
+void add_application(Command& app, Common& common, const Application& application) {
+  Command* command = app.add_subcommand(application.name, application.summary);
   const auto options = std::make_shared<PhysicsOptions>();
   add_body_options(*command, options->body);
   command->get_option("mesh")->description("Coefficients of its mass (JSON, CSV, netCDF, ICGEM's .gfc, SHTOOLS text or "
@@ -102,7 +102,7 @@ void add_application(CLI::App& app, Common& common, const Application& applicati
       ->add_option("--recipe", options->recipe,
                    "default, or paper: as Higher multipoles of the cow has it (benchmark, 2.39 m, 1 g/cm3), with its "
                    "numbers beside those of its mesh")
-      ->check(CLI::IsMember({"default", "paper"}))
+      ->check(one_of({"default", "paper"}))
       ->capture_default_str();
   command->add_flag("--json", options->json, fmt::format("As JSON (data/schemas/cowgpu.{}.v1.json)", application.name));
   command->footer(application.footer);
@@ -333,7 +333,7 @@ void note_density(const PhysicsOptions& options, bool metric, std::vector<std::s
     notes.push_back("the density was not given: 1 kg/m3, of a body as light as air; --density 1g/cm3 is that of water");
 }
 
-void add_physics(CLI::App& app, Common& common) {
+void add_physics(Command& app, Common& common) {
   for (const Application& application : applications) add_application(app, common, application);
 }
 

@@ -86,16 +86,16 @@ struct Application {
   const char* name;
   const char* summary;
   const char* footer;
-  Solve (*add)(CLI::App& command, Common& common);
+  Solve (*add)(Command& command, Common& common);
   bool paper_of_formulas = false; ///< what it lays beside the paper holds for every body
   bool asks_radius = false;       ///< it takes --brillouin-radius for files that do not say it
 };
 
-Solve add_tensors(CLI::App& command, Common& common);
-Solve add_potential(CLI::App& command, Common& common);
-Solve add_radiate(CLI::App& command, Common& common);
-Solve add_tides(CLI::App& command, Common& common);
-Solve add_drop(CLI::App& command, Common& common);
-Solve add_tip(CLI::App& command, Common& common);
+Solve add_tensors(Command& command, Common& common);
+Solve add_potential(Command& command, Common& common);
+Solve add_radiate(Command& command, Common& common);
+Solve add_tides(Command& command, Common& common);
+Solve add_drop(Command& command, Common& common);
+Solve add_tip(Command& command, Common& common);
 
 } // namespace cowgpu::cli

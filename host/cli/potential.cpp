@@ -314,7 +314,8 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
   if (!input.body && !input.coefficients->origin)
     found.notes.push_back("the file does not say its origin: places are counted from it");
   add_exact_notes(options, s, found);
-  if (const double rest = std::pow(s.nearest, -(s.lmax + 1)); s.radius_known && rest > 1e-12) // as many digits are shown
+  if (const double rest = std::pow(s.nearest, -(s.lmax + 1));
+      s.radius_known && rest > 1e-12) // as many digits are shown
     found.notes.push_back(
         fmt::format("the nearest point of the series is {:.6g} radii away: to degree {} its terms have fallen "
                     "to {:.2g} there at most; {} is nearer to the truth",
@@ -437,7 +438,7 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
 
 } // namespace
 
-Solve add_potential(CLI::App& command, Common& common) {
+Solve add_potential(Command& command, Common& common) {
   const auto options = std::make_shared<Options>();
   command
       .add_option("--at", options->places.at,
@@ -472,7 +473,7 @@ Solve add_potential(CLI::App& command, Common& common) {
   command
       .add_option("--inside", options->inside,
                   "Points inside the sphere that holds the body: refuse, or exact, the polyhedron's closed form")
-      ->check(CLI::IsMember({"refuse", "exact"}))
+      ->check(one_of({"refuse", "exact"}))
       ->capture_default_str();
   command.add_flag("--exact", options->exact,
                    "The polyhedron's closed form everywhere, or where it is nearer to the truth (far away) its series");

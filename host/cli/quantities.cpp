@@ -55,7 +55,7 @@ double parse_length_unit(const std::string& text) {
   return unit.value;
 }
 
-void add_length_unit_option(CLI::App& command, std::string& text, const char* of) {
+void add_length_unit_option(Command& command, std::string& text, const char* of) {
   command
       .add_option(
           "--length-unit", text,

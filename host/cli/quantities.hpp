@@ -28,7 +28,7 @@ double parse_length_unit(const std::string& text);
 
 /// Adds --length-unit to a command that reads files of coefficients; `of` names them in the help: "IN". Its text goes to
 /// read_in_unit() by way of stated_metres(), which is empty where the option is not given.
-void add_length_unit_option(CLI::App& command, std::string& text, const char* of);
+void add_length_unit_option(Command& command, std::string& text, const char* of);
 std::optional<double> stated_metres(const std::string& text);
 
 /// Adds to the notes what the text's unit stands for, where that is not the same everywhere: R_earth.

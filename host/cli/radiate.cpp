@@ -290,7 +290,7 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
 
 } // namespace
 
-Solve add_radiate(CLI::App& command, Common&) {
+Solve add_radiate(Command& command, Common&) {
   const auto options = std::make_shared<Options>();
   command.add_option("--axis", options->axis, "Through the centre of mass: x, y, z or X,Y,Z in the body's axes")
       ->type_name("AXIS")

@@ -155,9 +155,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_reconstruct(CLI::App& app, Common& common) {
+void add_reconstruct(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Command* command =
       app.add_subcommand("reconstruct", "The body again, at any order, from the coefficients of its surface");
   command
       ->add_option("input", options->source.input,
@@ -176,7 +176,7 @@ void add_reconstruct(CLI::App& app, Common& common) {
   command
       ->add_option("--fields", options->fields,
                    "xyz (closer to the body at high orders), or f: distance and angles about the origin")
-      ->check(CLI::IsMember({"xyz", "f"}))
+      ->check(one_of({"xyz", "f"}))
       ->capture_default_str();
   command
       ->add_option("--lmax", options->source.lmax,
@@ -198,8 +198,7 @@ void add_reconstruct(CLI::App& app, Common& common) {
                    "FILE.glb or FILE.ply, with {} for the order where there are several, or a folder, for "
                    "order-0007.glb and the like")
       ->type_name("FILE|DIR");
-  command->add_option("--format", options->format, "In a folder: glb (default) or ply")
-      ->check(CLI::IsMember({"glb", "ply"}));
+  command->add_option("--format", options->format, "In a folder: glb (default) or ply")->check(one_of({"glb", "ply"}));
   command->add_flag("--json", options->json, "As JSON (data/schemas/cowgpu.reconstruct.v1.json)");
   add_common_options(*command, common);
   command->footer("Examples: cowgpu reconstruct benchmark --order 0..7,32 -o 'cow-{}.glb'\n"

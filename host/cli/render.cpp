@@ -137,9 +137,9 @@ void run(const Options& given, const Common& common) {
 
 } // namespace
 
-void add_render(CLI::App& app, Common& common) {
+void add_render(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("render", "A picture of a mesh, or of its body rebuilt at some orders");
+  Command* command = app.add_subcommand("render", "A picture of a mesh, or of its body rebuilt at some orders");
   command
       ->add_option("input", options->source.input,
                    "A mesh, or FILE.json of `cowgpu expand --of ...`, whose body is rebuilt. " + mesh_help())
@@ -165,7 +165,7 @@ void add_render(CLI::App& app, Common& common) {
                    "With --order: the map (stretch, harmonic, smooth or flow), or a file's expansion by name (stretch)")
       ->type_name("NAME");
   command->add_option("--fields", options->fields, "With --order: xyz (default), or f: distance and angles")
-      ->check(CLI::IsMember({"xyz", "f"}));
+      ->check(one_of({"xyz", "f"}));
   command
       ->add_option(
           "--lmax", options->source.lmax,

@@ -167,9 +167,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_report(CLI::App& app, Common& common) {
+void add_report(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  Command* command = app.add_subcommand(
       "report", "A result as one HTML file: the body at every order, its map, spectra, tables; it needs no network");
   command->add_option("result", options->result, "FILE.json of `cowgpu expand`")
       ->type_name("RESULT")

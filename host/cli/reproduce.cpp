@@ -263,8 +263,8 @@ void reproduce_all(const Options& options, Common& common) {
 
 } // namespace
 
-void add_reproduce(CLI::App& app, Common& common) {
-  CLI::App* command = app.add_subcommand(
+void add_reproduce(Command& app, Common& common) {
+  Command* command = app.add_subcommand(
       "reproduce", "Every table, number and figure of \"Higher multipoles of the cow\", beside what the paper prints");
   const auto options = std::make_shared<Options>();
   command

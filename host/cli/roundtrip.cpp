@@ -178,9 +178,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_roundtrip(CLI::App& transform, Common& common) {
+void add_roundtrip(Command& transform, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = transform.add_subcommand(
+  Command* command = transform.add_subcommand(
       "roundtrip", "Random coefficients to a grid and back: how exact and how fast; exit 1 if out of bounds");
   add_degree_option(*command, options->lmax, "Largest degree, 0 to 8192");
   command->get_option("--lmax")->required();

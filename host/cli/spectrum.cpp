@@ -121,9 +121,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_spectrum(CLI::App& app, Common& common) {
+void add_spectrum(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("spectrum", "Power per degree of coefficients in a file");
+  Command* command = app.add_subcommand("spectrum", "Power per degree of coefficients in a file");
   command
       ->add_option("FILE", options->input,
                    "Coefficients of any format that `convert` reads, recognised by their content")

@@ -156,9 +156,9 @@ void run(const Options& options, const Common& common) {
 
 } // namespace
 
-void add_streamlines(CLI::App& app, Common& common) {
+void add_streamlines(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  Command* command = app.add_subcommand(
       "streamlines", "Streamlines of the distance's flow off the cut of a surface with a plane, as data for a figure");
   command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->required();
   add_mend_options(*command, options->mending);

@@ -87,7 +87,7 @@ Findings solve(const PhysicsOptions& options, bool inertia_wanted) {
 
 } // namespace
 
-Solve add_tensors(CLI::App& command, Common&) {
+Solve add_tensors(Command& command, Common&) {
   const auto inertia = std::make_shared<bool>(false);
   command.add_flag("--inertia", *inertia, "The inertia is what is wanted: refuse a file that does not give it");
   return [inertia](const PhysicsOptions& options) { return solve(options, *inertia); };

@@ -196,7 +196,7 @@ Findings solve(const PhysicsOptions& common, const Options& options) {
 
 } // namespace
 
-Solve add_tides(CLI::App& command, Common&) {
+Solve add_tides(Command& command, Common&) {
   const auto options = std::make_shared<Options>();
   command
       .add_option("--orbit", options->orbit,

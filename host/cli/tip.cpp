@@ -366,7 +366,7 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
 
 } // namespace
 
-Solve add_tip(CLI::App& command, Common& common) {
+Solve add_tip(Command& command, Common& common) {
   const auto options = std::make_shared<Options>();
   command.get_option("mesh")->description(
       "Coefficients of its surface (FILE of `cowgpu expand --of stretch`), or a mesh: " + mesh_help());
@@ -381,7 +381,7 @@ Solve add_tip(CLI::App& command, Common& common) {
                   "Map of a mesh: stretch (default), harmonic, smooth or flow; or name of the expansion of a file")
       ->type_name("NAME");
   command.add_option("--fields", options->choice.fields, "xyz, or f: distance and angles about the origin")
-      ->check(CLI::IsMember({"xyz", "f"}))
+      ->check(one_of({"xyz", "f"}))
       ->capture_default_str();
   command
       .add_option("--lmax", options->choice.lmax,
@@ -399,7 +399,7 @@ Solve add_tip(CLI::App& command, Common& common) {
   command
       .add_option("--side", options->side,
                   "The side it falls to, about an axis along x (y is up): left (-z), right (+z), or the weaker")
-      ->check(CLI::IsMember({"weaker", "left", "right"}))
+      ->check(one_of({"weaker", "left", "right"}))
       ->capture_default_str();
   command.add_flag(
       "--smooth", options->smooth,

@@ -143,7 +143,7 @@ void add_profile(const Rocker& rocker, const PushOptions& options, const Profile
 
 } // namespace
 
-void add_push_options(CLI::App& command, PushOptions& options) {
+void add_push_options(Command& command, PushOptions& options) {
   command
       .add_option(
           "--push", options.push,
@@ -154,7 +154,7 @@ void add_push_options(CLI::App& command, PushOptions& options) {
   command
       .add_option("--push-direction", options.direction,
                   "body: at right angles to the line from pivot to point all the time; space: as it began")
-      ->check(CLI::IsMember({"body", "space"}))
+      ->check(one_of({"body", "space"}))
       ->capture_default_str();
   command.add_option("--sustained", options.sustained, "A force that lasts, marked on the boundary")
       ->type_name("FORCE")

@@ -18,7 +18,7 @@ struct PushOptions {
   std::string sustained = "500 N", punch = "5000 N", punch_duration;
 };
 
-void add_push_options(CLI::App& command, PushOptions& options);
+void add_push_options(Command& command, PushOptions& options);
 
 /// The options read, before there is a body.
 struct PushPlan {

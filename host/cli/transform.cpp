@@ -240,15 +240,15 @@ void synthesise(const Options& options, const Common& common) {
   finish(options, common, *file, run, start);
 }
 
-void add_direction_options(CLI::App& command, Options& options, Common& common) {
+void add_direction_options(Command& command, Options& options, Common& common) {
   command.add_flag("--json", options.json, "A report as JSON on stdout (data/schemas/cowgpu.transform.v1.json)");
   command.add_flag("--dry-run", options.dry_run, "Print the plan and the memory it needs, and stop");
   add_common_options(command, common);
 }
 
-void add_analyse(CLI::App& transform, Common& common) {
+void add_analyse(Command& transform, Common& common) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = transform.add_subcommand("analyse", "Coefficients of the fields on a grid");
+  Command* command = transform.add_subcommand("analyse", "Coefficients of the fields on a grid");
   command
       ->add_option("IN", options->input,
                    "Grid file, .nc (latitudes and longitudes in degrees, in any order; pyshtools' grids too) or .csv "
@@ -271,10 +271,10 @@ void add_analyse(CLI::App& transform, Common& common) {
   command->callback([options, &common] { analyse(*options, common); });
 }
 
-void add_synthesise(CLI::App& transform, Common& common) {
+void add_synthesise(Command& transform, Common& common) {
   const auto options = std::make_shared<Options>();
   options->grid = "gl";
-  CLI::App* command = transform.add_subcommand("synthesise", "Fields on a grid from their coefficients");
+  Command* command = transform.add_subcommand("synthesise", "Fields on a grid from their coefficients");
   command
       ->add_option("IN", options->input,
                    "Coefficients of any convention and of any format that `convert` reads, recognised by their content")
@@ -296,8 +296,8 @@ void add_synthesise(CLI::App& transform, Common& common) {
 
 } // namespace
 
-void add_transform(CLI::App& app, Common& common) {
-  CLI::App* command =
+void add_transform(Command& app, Common& common) {
+  Command* command =
       app.add_subcommand("transform", "Spherical-harmonic transforms of fields on the sphere, to degree 8192");
   command->require_subcommand(1);
   add_analyse(*command, common);

@@ -60,10 +60,10 @@ void run(const Options& options, Common& common) {
 
 } // namespace
 
-void add_validate(CLI::App& app, Common& common) {
+void add_validate(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
   options->body.mesh = "builtin:cow@1";
-  CLI::App* command = app.add_subcommand(
+  Command* command = app.add_subcommand(
       "validate", "Compute by every path and by a slow reference, and compare; exit 1 if anything is out of bounds");
   command->add_option("mesh", options->body.mesh, mesh_help())->type_name("MESH")->capture_default_str();
   command->add_option("--origin", options->body.origin, "Origin, as in expand: com (centre of mass), mesh, or X,Y,Z")
