@@ -1,8 +1,9 @@
 #include "host/cli/body_options.hpp"
 #include "host/cli/coefficient_outputs.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/expand_flow.hpp"
-#include "host/cli/expand_surfaces.hpp"
+#include "host/cli/expansion_words.hpp"
+#include "host/requests/expand_flow.hpp"
+#include "host/requests/expand_surfaces.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"

@@ -1,9 +1,9 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/drawing.hpp"
-#include "host/cli/expand_flow.hpp"
 #include "host/cli/mend_options.hpp"
 #include "host/cli/surface_outputs.hpp"
 #include "host/figures/scene.hpp"
+#include "host/requests/expand_flow.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"

@@ -1,11 +1,14 @@
+#include "host/requests/inspect.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/inspection.hpp"
 #include "host/cli/mend_options.hpp"
 #include "host/error.hpp"
 #include "host/io/off.hpp"
 #include "host/io/ply.hpp"
+#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 
@@ -49,9 +52,9 @@ void run(const Options& options, const Common& common) {
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   }
   if (options.json)
-    write_inspection_json(found, options.output);
+    write_stdout(json_text(inspection_json(found, options.output)) + "\n");
   else
-    write_inspection_text(found);
+    write_inspection(found, write_stdout);
 }
 
 } // namespace

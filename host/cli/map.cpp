@@ -1,7 +1,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/mend_options.hpp"
 
-#include "host/cli/expand_flow.hpp"
+#include "host/cli/expansion_words.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/map_file.hpp"
@@ -14,6 +14,7 @@
 #include "host/number.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/map_report.hpp"
+#include "host/requests/expand_flow.hpp"
 
 #include <fmt/format.h>
 

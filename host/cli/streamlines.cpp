@@ -1,6 +1,6 @@
 #include "host/cli/commands.hpp"
-#include "host/cli/expand_flow.hpp"
 #include "host/cli/mend_options.hpp"
+#include "host/requests/expand_flow.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"

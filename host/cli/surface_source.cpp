@@ -1,11 +1,12 @@
 #include "host/cli/surface_source.hpp"
 
 #include "host/cli/commands.hpp"
-#include "host/cli/expand_surfaces.hpp"
+#include "host/cli/expansion_words.hpp"
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/surface_file.hpp"
 #include "host/mesh/winding_notes.hpp"
+#include "host/requests/expand_surfaces.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>

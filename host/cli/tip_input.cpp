@@ -1,6 +1,6 @@
 #include "host/cli/tip_input.hpp"
 
-#include "host/cli/expand_surfaces.hpp"
+#include "host/cli/expansion_words.hpp"
 #include "host/cli/order_list.hpp"
 #include "host/cli/surface_source.hpp"
 #include "host/error.hpp"
@@ -9,6 +9,7 @@
 #include "host/io/coefficient_metadata.hpp"
 #include "host/io/result_json.hpp"
 #include "host/io/surface_file.hpp"
+#include "host/requests/expand_surfaces.hpp"
 #include "host/spectrum/convert.hpp"
 #include "host/spectrum/expand_surface.hpp"
 

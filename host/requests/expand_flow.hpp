@@ -1,11 +1,11 @@
-// The expansion of `cowgpu expand --of flow`.
+// The surface of a body expanded over the distance's flow.
 #pragma once
 
-#include "host/cli/expand_surfaces.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
+#include "host/requests/expand_surfaces.hpp"
 
-namespace cowgpu::cli {
+namespace cowgpu {
 
 /// Expands over the distance's flow by the meaning that `choice` asks for; name, recipe and origin's kind of the result
 /// are the caller's. Throws what host/flow/flow_map.hpp throws.
@@ -29,7 +29,4 @@ double flow_time(double given, const StarShapeTime& star);
 /// Throws Error(bad_argument) for a time outside 1e-9 ... 1e4 diagonals of the box, in which distances resolve it.
 void check_flow_time(double time, const Box& box);
 
-/// Reads --time: "auto" (0), or a finite number above 0. Throws Error(bad_argument).
-double parse_flow_time(const std::string& text);
-
-} // namespace cowgpu::cli
+} // namespace cowgpu

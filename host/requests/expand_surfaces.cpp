@@ -1,6 +1,5 @@
-#include "host/cli/expand_surfaces.hpp"
+#include "host/requests/expand_surfaces.hpp"
 
-#include "host/cli/expand_flow.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/foreign_file.hpp"
@@ -11,17 +10,14 @@
 #include "host/map/smooth.hpp"
 #include "host/map/stretch.hpp"
 #include "host/mesh/half_edges.hpp"
+#include "host/requests/expand_flow.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <sstream>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 namespace {
-
-constexpr std::array map_names = {"harmonic", "stretch", "smooth", "flow"};
 
 SphereMap make_map(const std::string& method, bool paper, const ManifoldSurface& surface, Monitor& monitor) {
   if (method == "stretch") return stretch_map(surface, {}, monitor);
@@ -75,49 +71,6 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
 
 } // namespace
 
-ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, const std::string& map_file,
-                                 int lmax) {
-  ExpansionChoice choice;
-  choice.map_file = map_file;
-  choice.lmax = lmax;
-  choice.paper = recipe == "paper";
-  std::array<bool, map_names.size()> wanted{};
-  std::istringstream list(of + ",");
-  for (std::string word; std::getline(list, word, ',');) {
-    const auto map = std::find(map_names.begin(), map_names.end(), word);
-    if (word == "all") {
-      choice.mass = true;
-      wanted.fill(true);
-    } else if (word == "mass")
-      choice.mass = true;
-    else if (map != map_names.end())
-      wanted[std::size_t(map - map_names.begin())] = true;
-    else
-      throw Error(
-          Fault::bad_argument,
-          fmt::format("--of {}: there is no expansion \"{}\"; there are mass, harmonic, stretch, smooth, flow and "
-                      "all, separated by commas",
-                      of, word));
-  }
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i]) choice.maps.emplace_back(map_names[i]);
-  if (choice.paper && !wanted[0] && !wanted[3])
-    throw Error(
-        Fault::bad_argument,
-        fmt::format("--recipe paper is about the harmonic map and the flow, and --of {} asks for neither; add --of "
-                    "harmonic or --of flow",
-                    of));
-  if (!map_file.empty() && (choice.maps.size() != 1 || wanted[3]))
-    throw Error(Fault::bad_argument,
-                fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
-                            "with --of harmonic, stretch or smooth",
-                            map_file, of,
-                            choice.maps.empty()      ? "none"
-                            : choice.maps.size() > 1 ? "several"
-                                                     : "the flow, whose map is not kept in a file"));
-  return choice;
-}
-
 MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend) {
   if (choice.maps.empty()) return {};
   MemoryNeed need = expand_surface_memory(faces, choice.lmax, backend);
@@ -147,4 +100,4 @@ void check_surfaces(std::span<const SurfaceResult> results) {
       throw Error(Fault::check_failed, "--of " + result.name + ": " + result.flow->failure);
 }
 
-} // namespace cowgpu::cli
+} // namespace cowgpu

@@ -1,8 +1,5 @@
-#include "host/cli/inspection.hpp"
+#include "host/report/inspection.hpp"
 
-#include "host/cli/console.hpp"
-#include "host/error.hpp"
-#include "host/mesh/half_edges.hpp"
 #include "host/mesh/topology.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
@@ -12,28 +9,13 @@
 
 #include <algorithm>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double largest_coordinate = 1e100; // whose differences and their products of three do not overflow
-
 Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
-}
-
-void judge(Inspection& found) {
-  try {
-    ClosedSurface closed = ClosedSurface::from(found.mesh);
-    try {
-      require_sphere(ManifoldSurface::from(std::move(closed)));
-    } catch (const Error& error) {
-      found.maps = fmt::format("no [{}]: {}", name(error.fault()), error.what());
-    }
-  } catch (const Error& error) {
-    found.moments = found.maps = fmt::format("no [{}]: {}", name(error.fault()), error.what());
-  }
 }
 
 Vec3 middle(const FacePair& pair) {
@@ -73,35 +55,7 @@ std::string text_of(const RegionVolume& region, double volume) {
 
 } // namespace
 
-Inspection inspect(RawMesh mesh, Monitor& monitor, unsigned threads) {
-  Inspection found;
-  found.mesh = std::move(mesh);
-  check_stop(monitor);
-  found.audit = audit(found.mesh);
-  check_stop(monitor);
-  judge(found);
-  check_stop(monitor);
-  const Audit& a = found.audit;
-  const std::vector<Vec3>& vertices = found.mesh.vertices;
-  const std::vector<Face>& faces = found.mesh.faces;
-  const double largest = std::max(a.box.min.cwiseAbs().maxCoeff(), a.box.max.cwiseAbs().maxCoeff());
-  if (!a.finite || faces.empty() || largest > largest_coordinate) return found;
-  const plan::Bvh tree(vertices, faces);
-  found.intersections = self_intersections(vertices, faces, tree, monitor, threads);
-  if (!a.volume) return found;
-  if (!found.intersections->complete) return found;
-  found.overlap = overlap(vertices, faces, tree, *found.intersections, monitor, threads);
-  const TriangleSheet sheet = body_boundary(vertices, faces, tree, *found.intersections, monitor, threads);
-  const plan::Bvh boundary(sheet.vertices, sheet.faces);
-  if (const LargestBall ball = largest_ball(vertices, faces, tree, boundary, monitor); ball.radius > 0)
-    found.largest_ball = ball;
-  if (!a.centre_of_mass) return found;
-  found.brillouin_radius = brillouin_radius(vertices, faces, *a.centre_of_mass);
-  found.inscribed_radius = inscribed_radius(vertices, faces, tree, boundary, *a.centre_of_mass);
-  return found;
-}
-
-void write_inspection_json(const Inspection& found, const std::string& output) {
+nlohmann::ordered_json inspection_json(const Inspection& found, const std::string& output) {
   const Audit& a = found.audit;
   const RawMesh& mesh = found.mesh;
   Json out = {{"schema", "cowgpu.inspect.v1"},
@@ -153,19 +107,17 @@ void write_inspection_json(const Inspection& found, const std::string& output) {
                            {"bound", found.largest_ball->bound}};
   out["notes"] = mesh.notes;
   if (!output.empty()) out["output"] = output;
-  write_stdout(json_text(out) + "\n");
+  return out;
 }
 
-void write_inspection_text(const Inspection& found) {
+void write_inspection(const Inspection& found, const Sink& sink) {
   const Audit& a = found.audit;
   const RawMesh& mesh = found.mesh;
-  const auto row = [](const char* what, const std::string& value) {
-    write_stdout(fmt::format("  {:<24} {}\n", what, value));
-  };
+  const auto row = [&](const char* what, const std::string& value) { sink(fmt::format("  {:<24} {}\n", what, value)); };
   const auto yes = [](bool value) { return std::string(value ? "yes" : "no"); };
   const auto point = [](const Vec3& v) { return fmt::format("({:.15g}, {:.15g}, {:.15g})", v.x(), v.y(), v.z()); };
-  write_stdout(mesh_line(mesh) + "\n");
-  for (const std::string& note : mesh.notes) write_stdout("note: " + note + "\n");
+  sink(mesh_line(mesh) + "\n");
+  for (const std::string& note : mesh.notes) sink("note: " + note + "\n");
   row("fit for moments", found.moments);
   row("fit for sphere maps", found.maps);
   row("vertices, edges, faces", fmt::format("{}, {}, {}", a.vertices, a.edges, a.faces));
@@ -212,4 +164,4 @@ void write_inspection_text(const Inspection& found) {
         fmt::format("radius {:.6g} about {} (none above {:.6g})", ball->radius, point(ball->centre), ball->bound));
 }
 
-} // namespace cowgpu::cli
+} // namespace cowgpu

@@ -1,4 +1,4 @@
-// The surface expansions of `cowgpu expand`.
+// The surface of a body expanded over maps to the sphere.
 #pragma once
 
 #include "host/backend.hpp"
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 
 /// How the surface is expanded over the distance's flow.
 struct FlowChoice {
@@ -20,7 +20,7 @@ struct FlowChoice {
   int refinements = 3; ///< refinements of the mesh, for sheets and the paper's recipe
 };
 
-/// What --of, --recipe and --lmax ask for.
+/// Which expansions are asked for.
 struct ExpansionChoice {
   bool mass = false;
   std::vector<std::string> maps; ///< some of "harmonic", "stretch", "smooth", "flow", in this order, each once
@@ -29,11 +29,6 @@ struct ExpansionChoice {
   int lmax = 0;
   FlowChoice flow;
 };
-
-/// Reads the list `of` (commas; "all") and `recipe` ("default", "paper"). Throws Error(bad_argument) for a name that is
-/// none, for the paper's recipe without the harmonic map or the flow, and for a map file without just one map that it stands for.
-ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, const std::string& map_file,
-                                 int lmax);
 
 /// What the largest of the surface expansions needs, and all results; nothing where none is asked for.
 MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend);
@@ -46,4 +41,4 @@ std::vector<SurfaceResult> expand_surfaces(const ExpansionChoice& choice, bool e
 /// Throws Error(check_failed) with the sentence of the first expansion that came out unfit for use (FlowResult::failure).
 void check_surfaces(std::span<const SurfaceResult> results);
 
-} // namespace cowgpu::cli
+} // namespace cowgpu

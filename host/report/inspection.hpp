@@ -1,15 +1,18 @@
-// What `inspect` finds out about a mesh, and how it says so.
+// What is found out about a mesh, and how it is said (host/requests/inspect.hpp).
 #pragma once
 
 #include "host/mesh/audit.hpp"
 #include "host/mesh/inscribed.hpp"
 #include "host/mesh/overlap.hpp"
 #include "host/mesh/self_intersections.hpp"
+#include "host/report/result.hpp"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <optional>
 #include <string>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 
 /// Pairs of intersecting faces that are named.
 inline constexpr std::size_t listed_pairs = 10;
@@ -26,11 +29,10 @@ struct Inspection {
   std::optional<LargestBall> largest_ball; ///< if there is a point inside
 };
 
-/// The mesh is judged as it is. Throws Error(mesh_index_range, interrupted).
-Inspection inspect(RawMesh mesh, Monitor& monitor, unsigned threads);
+/// After data/schemas/cowgpu.inspect.v1.json. `output`: the file that the mesh was written to, or "".
+nlohmann::ordered_json inspection_json(const Inspection& found, const std::string& output);
 
-/// To standard output. `output`: the file that the mesh was written to, or "".
-void write_inspection_json(const Inspection& found, const std::string& output);
-void write_inspection_text(const Inspection& found);
+/// Lines for the screen.
+void write_inspection(const Inspection& found, const Sink& sink);
 
-} // namespace cowgpu::cli
+} // namespace cowgpu

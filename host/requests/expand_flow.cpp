@@ -1,17 +1,16 @@
-#include "host/cli/expand_flow.hpp"
+#include "host/requests/expand_flow.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
-#include "host/number.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 namespace {
 
 constexpr double paper_time = 0.2;
@@ -161,13 +160,4 @@ void check_flow_time(double time, const Box& box) {
                             time, diagonal));
 }
 
-double parse_flow_time(const std::string& text) {
-  if (text == "auto") return 0;
-  const auto time = read_number(text);
-  if (!time || !(*time > 0))
-    throw Error(Fault::bad_argument,
-                fmt::format("--time {}: it must be auto or a number above 0, in the mesh's length unit", text));
-  return *time;
-}
-
-} // namespace cowgpu::cli
+} // namespace cowgpu
