@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # scripts/fuzz.sh SECONDS [READER...]: builds the fuzz targets of the readers (preset `fuzz`, clang and its sanitizers) and
 # runs each for SECONDS, two at a time, beginning with the files of tests/corpus. What a target finds fails the script and
-# lies in build/fuzz/found/READER-*; it becomes a file of the corpus once it is mended. Without clang it prints SKIPPED.
+# lies in build/fuzz/found/READER-*; it becomes a file of the corpus once it is mended. Without clang it prints SKIPPED
+# and ends with 77.
 set -euo pipefail
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [READER...]}
@@ -10,7 +11,7 @@ build=$root/build/fuzz found=$root/build/fuzz/found
 
 if ! command -v clang++ >/dev/null || ! compgen -G '/usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*' >/dev/null; then
   echo "SKIPPED: clang and libclang-rt-14-dev are not installed"
-  exit
+  exit 77
 fi
 mkdir -p "$build" "$found"
 cd -- "$root"

@@ -10,7 +10,7 @@ try:
     import jsonschema
 except ImportError:
     print("SKIPPED: python3-jsonschema is not installed")
-    sys.exit(0)
+    sys.exit(77)
 
 program, folder_of_schemas = sys.argv[1:]
 

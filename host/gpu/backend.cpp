@@ -1,7 +1,6 @@
 // The Vulkan path: the verbs of host/backend.hpp on engine/.
-#include "host/backend.hpp"
+#include "host/gpu/backend.hpp"
 
-#include "engine/gpu.hpp"
 #include "engine/kernels/peak.hpp"
 #include "host/flush_denormals.hpp"
 #include "host/gpu/closest.hpp"
@@ -34,8 +33,8 @@ DeviceFacts facts_of(const engine::GpuFacts& gpu) {
 
 class GpuBackend final : public Backend {
 public:
-  explicit GpuBackend(const GpuOptions& options)
-      : gpu_(std::make_shared<engine::Gpu>(options.device, options.validation)), facts_(facts_of(gpu_->facts())),
+  GpuBackend(std::shared_ptr<engine::Gpu> gpu, const GpuOptions& options)
+      : gpu_(std::move(gpu)), facts_(facts_of(gpu_->facts())),
         shape_(engine::moments_shape(gpu_->facts(), gpu::shape_from(options))),
         transform_shape_(engine::sphere_transform_shape(gpu_->facts(), gpu::transform_shape_from(options))),
         iteration_budget_(options.iteration_budget) {}
@@ -112,10 +111,18 @@ private:
 
 } // namespace
 
-std::unique_ptr<Backend> make_gpu_backend(const GpuOptions& options) {
-  gpu::prepare_environment();
+std::shared_ptr<engine::Gpu> gpu::open_gpu(const GpuOptions& options) {
+  prepare_environment();
   const FlushDenormals flush; // the threads of a software device start now and inherit it
-  return gpu::translated([&] { return std::make_unique<GpuBackend>(options); });
+  return translated([&] { return std::make_shared<engine::Gpu>(options.device, options.validation); });
+}
+
+std::unique_ptr<Backend> gpu::make_backend(std::shared_ptr<engine::Gpu> gpu, const GpuOptions& options) {
+  return translated([&] { return std::make_unique<GpuBackend>(std::move(gpu), options); });
+}
+
+std::unique_ptr<Backend> make_gpu_backend(const GpuOptions& options) {
+  return gpu::make_backend(gpu::open_gpu(options), options);
 }
 
 std::vector<DeviceFacts> list_gpus(std::string* reason) {

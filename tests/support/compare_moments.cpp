@@ -1,6 +1,8 @@
 #include "tests/support/compare_moments.hpp"
 
+#include "engine/device.hpp"
 #include "host/error.hpp"
+#include "host/gpu/backend.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/plan/moments.hpp"
 #include "host/reference/moments.hpp"
@@ -12,6 +14,19 @@
 #include <iostream>
 
 namespace cowgpu::test {
+namespace {
+
+bool shares_device = false;
+std::shared_ptr<engine::Gpu> shared_gpu;
+
+std::shared_ptr<engine::Gpu> gpu_for(const GpuOptions& options) {
+  if (!shares_device || options.device != GpuOptions().device) return gpu::open_gpu(options);
+  if (!shared_gpu || shared_gpu->device().lost()) shared_gpu = gpu::open_gpu(options);
+  return shared_gpu;
+}
+
+} // namespace
+
 MomentProblem moment_problem(const RawMesh& mesh, int lmax, const Vec3& origin) {
   MomentProblem problem;
   problem.vertices = mesh.vertices;
@@ -25,12 +40,17 @@ MomentProblem moment_problem(const RawMesh& mesh, int lmax, const Vec3& origin) 
 std::unique_ptr<Backend> gpu_backend(GpuOptions options) {
   options.validation = true;
   try {
-    return make_gpu_backend(options);
+    return gpu::make_backend(gpu_for(options), options);
   } catch (const Error& error) {
     if (error.fault() != Fault::no_loader && error.fault() != Fault::no_device && error.fault() != Fault::no_fp64)
       throw;
     return {};
   }
+}
+
+void share_device(bool share) {
+  shares_device = share;
+  if (!share) shared_gpu.reset();
 }
 
 void skip_without_gpu() {

@@ -15,8 +15,11 @@ namespace cowgpu::test {
 /// A problem about `origin` with the body's own radius there. `mesh` must outlive it.
 MomentProblem moment_problem(const RawMesh& mesh, int lmax, const Vec3& origin = Vec3::Zero());
 
-/// The Vulkan path with validation on, or null where there is no device. Made anew by each call.
+/// The Vulkan path with validation on, or null where there is no device. Made anew by each call, its device too but where
+/// share_device() says otherwise.
 std::unique_ptr<Backend> gpu_backend(GpuOptions options = {});
+/// Whether the backends of this process are on one device, "auto" is; false closes it. Off at first.
+void share_device(bool share);
 /// Makes ctest list the test as skipped; the test returns then.
 void skip_without_gpu();
 

@@ -80,7 +80,7 @@ TEST_CASE("random coefficients come back from every grid", "[transform]") {
   });
 }
 
-TEST_CASE("random coefficients come back at degrees 1024 and 2048", "[transform][slow]") {
+TEST_CASE("random coefficients come back at degrees 1024 and 2048", "[transform][long]") {
   Paths paths;
   paths.each([&](Backend& backend) {
     INFO(backend.facts().name);
@@ -90,7 +90,7 @@ TEST_CASE("random coefficients come back at degrees 1024 and 2048", "[transform]
   });
 }
 
-TEST_CASE("random coefficients come back at degree 4096", "[transform][slow]") {
+TEST_CASE("random coefficients come back at degree 4096", "[transform][long]") {
   check_at_most(round_trip(*make_cpu_backend(), 4096, 1), 1e-11, "4096");
 }
 

@@ -226,7 +226,7 @@ TEST_CASE("glTF points and lines are left out with their number", "[gltf][reader
   CHECK(nothing.says("6 lines or faces of two corners"));
 }
 
-TEST_CASE("a sparse glTF accessor of a billion elements and no data takes no memory", "[gltf][readers]") {
+TEST_CASE("a sparse glTF accessor of a billion elements and no data takes no memory", "[alone][gltf][readers]") {
   const std::string text = replaced(replaced(tetrahedron_of(one_node), R"({"bufferView":0,"componentType":5126)",
                                              R"({"sparse":{"count":0,"indices":{"bufferView":1,"componentType":5123},)"
                                              R"("values":{"bufferView":0}},"componentType":5126)"),
@@ -236,7 +236,7 @@ TEST_CASE("a sparse glTF accessor of a billion elements and no data takes no mem
   if (memory_is_measurable()) CHECK(peak_growth([&] { outcome(text); }) < std::size_t{8} << 20);
 }
 
-TEST_CASE("glTF scenes that would grow beyond all bounds are refused", "[gltf][readers]") {
+TEST_CASE("glTF scenes that would grow beyond all bounds are refused", "[alone][gltf][readers]") {
   std::vector<float> numbers(27000);
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = float(i);
   const std::string points = bytes_of(numbers);

@@ -109,7 +109,7 @@ TEST_CASE("no direction of the built-in cow has a larger error than is printed",
   check_holds("cow", body_of(load_mesh("builtin:cow@0")), {0, 8}, {1, 1.5}, 400, 60);
 }
 
-TEST_CASE("no direction of the benchmark cow has a larger error than is printed", "[potential][errors][slow]") {
+TEST_CASE("no direction of the benchmark cow has a larger error than is printed", "[potential][errors][long]") {
   if (!benchmark_cow()) return skip_without_cow();
   check_holds("benchmark", make_body(*benchmark_cow(), {}, 1), {0, 2, 8}, {1, 1.5}, 300, 60);
 }

@@ -97,7 +97,7 @@ TEST_CASE("both paths agree with the reference beyond the degree where the colum
   }
 }
 
-TEST_CASE("the largest degree is within the range of doubles", "[moments][paths][slow]") {
+TEST_CASE("the largest degree is within the range of doubles", "[moments][paths][long]") {
   Paths paths;
   const RawMesh mesh = some_faces(icosphere(2), 13, 29);
   paths.compare(moment_problem(mesh, largest_degree), 1.6e-14);

@@ -193,11 +193,11 @@ TEST_CASE("rotations keep the norm of each degree and can be undone", "[rotation
   for (const EulerAngles& angles : some_angles) check_unitary(100, angles, 1.4e-14);
 }
 
-TEST_CASE("rotations are unitary at degree 1024", "[rotation][slow]") {
+TEST_CASE("rotations are unitary at degree 1024", "[rotation][long]") {
   for (const double beta : {0.9, 1e-3, 2.5, pi / 2}) check_unitary(1024, {0.3, beta, -2.2}, 4e-14);
 }
 
-TEST_CASE("rotations are unitary at degree 2048", "[rotation][slow]") {
+TEST_CASE("rotations are unitary at degree 2048", "[rotation][long]") {
   check_unitary(2048, {2.3, 1.2, 0.2}, 4e-14);
 }
 

@@ -68,11 +68,11 @@ TEST_CASE("the benchmark cow to degree 64 agrees with extended precision", "[mom
   compare_cow(64, 3e-15);
 }
 
-TEST_CASE("the benchmark cow to degree 512 agrees with extended precision", "[moments][benchmark][slow]") {
+TEST_CASE("the benchmark cow to degree 512 agrees with extended precision", "[moments][benchmark][long]") {
   compare_cow(512, 3e-14);
 }
 
-TEST_CASE("the benchmark cow to degree 2048 agrees with extended precision", "[moments][benchmark][slow]") {
+TEST_CASE("the benchmark cow to degree 2048 agrees with extended precision", "[moments][benchmark][long]") {
   compare_cow(2048, 1e-13);
 }
 

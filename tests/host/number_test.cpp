@@ -100,7 +100,7 @@ TEST_CASE("a number is taken off the front of a text, and lists have single comm
   }
 }
 
-TEST_CASE("numbers do not depend on the locale", "[number]") {
+TEST_CASE("numbers do not depend on the locale", "[number][alone]") {
   const char* const german = std::setlocale(LC_ALL, "de_DE.UTF-8");
   CHECK(read_number("1.5") == 1.5);
   CHECK_FALSE(read_number("1,5"));

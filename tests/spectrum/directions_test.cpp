@@ -144,7 +144,7 @@ TEST_CASE("angles and vectors name the same direction", "[directions]") {
   }
 }
 
-TEST_CASE("no direction gives a NaN at degree 4096", "[directions][slow]") {
+TEST_CASE("no direction gives a NaN at degree 4096", "[directions][long]") {
   const SphereCoefficients a = random_coefficients(4096, 1, 3);
   const DirectionValues v = at(a, places(4096, 0));
   const double scale = field_scale(a);

@@ -185,7 +185,7 @@ TEST_CASE("stretch maps have no flips in any order and pose", "[stretch]") {
   }
 }
 
-TEST_CASE("stretch maps of the larger bodies have no flips in any order and pose", "[stretch][slow]") {
+TEST_CASE("stretch maps of the larger bodies have no flips in any order and pose", "[stretch][long]") {
   for (const char* name : {"armadillo", "bear", "bunny00", "camel", "diplodocus"}) {
     if (const auto body = test::demo_body(name))
       check_poses(body->mesh());
@@ -358,7 +358,7 @@ TEST_CASE("a tetrahedron's stretch map keeps its corners where they point", "[st
   CHECK(largest_distance(map.positions, mesh.vertices) < 1e-7);
 }
 
-TEST_CASE("large and refined bodies have stretch maps without flips", "[stretch][slow]") {
+TEST_CASE("large and refined bodies have stretch maps without flips", "[stretch][long]") {
   const ManifoldSurface sphere = manifold(test::icosphere(6));
   check_bijective(sphere, mapped(sphere));
   const ManifoldSurface pyramid = manifold(bipyramid(5000));
@@ -369,7 +369,7 @@ TEST_CASE("large and refined bodies have stretch maps without flips", "[stretch]
   check_bijective(refined, mapped(refined));
 }
 
-TEST_CASE("the energy of the benchmark's stretch map after many sweeps", "[stretch][slow]") {
+TEST_CASE("the energy of the benchmark's stretch map after many sweeps", "[stretch][long]") {
   const auto cow = test::benchmark_cow();
   if (!cow) return test::skip_without_cow();
   const ManifoldSurface surface = ManifoldSurface::from(*cow);

@@ -191,7 +191,7 @@ TEST_CASE("an interrupted reproduce says so and keeps what it has", "[reproduce]
   CHECK(read_json(folder / "out/data/stages.json")["stages"].size() >= 1);
 }
 
-TEST_CASE("every number of the paper is computed for its own cow", "[reproduce][cli][slow]") {
+TEST_CASE("every number of the paper is computed for its own cow", "[reproduce][cli][long]") {
   if (!benchmark_cow()) return skip_without_cow();
   const TemporaryFolder folder;
   const ProgramRun run = reproduce(folder, {});

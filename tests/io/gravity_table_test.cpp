@@ -281,7 +281,7 @@ TEST_CASE("every command that reads coefficients takes a table in kilometres", "
 }
 
 TEST_CASE("prefixes and damaged copies of gravity tables are read or refused by name, in bounded memory",
-          "[gravity-table][readers]") {
+          "[gravity-table][readers][alone]") {
   for (const auto& file : corpus("coefficients")) {
     if (file.extension() != ".sh" && file.extension() != ".gfc") continue;
     const std::string bytes = test::read_text(file);

@@ -121,7 +121,7 @@ TEST_CASE("the recurrence is right near the poles and the equator, and leaves ou
       }
 }
 
-TEST_CASE("the recurrence is right to degree 4096", "[legendre][slow]") {
+TEST_CASE("the recurrence is right to degree 4096", "[legendre][long]") {
   const int lmax = 4096;
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, lmax);
   for (const int orders : {1, 8}) {
@@ -153,7 +153,7 @@ TEST_CASE("the addition theorem holds on the first, the middle and the last ring
   }
 }
 
-TEST_CASE("no start value is denormal, not a number or infinite, to degree 8192", "[legendre][slow]") {
+TEST_CASE("no start value is denormal, not a number or infinite, to degree 8192", "[legendre][long]") {
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, largest_grid_degree);
   const plan::Legendre plan = plan::legendre(grid, largest_grid_degree);
   for (const auto* array : {&plan.a, &plan.b, &plan.b_polar, &plan.alpha, &plan.e, &plan.t}) {

@@ -266,7 +266,7 @@ TEST_CASE("errors by order and distance fall as the series does, and say from wh
 }
 
 TEST_CASE("the benchmark cow is spherical to 1e-3 from 18 of its radii on, and a quadrupole from 5 on",
-          "[potential][slow]") {
+          "[potential][long]") {
   if (!benchmark_cow()) return skip_without_cow();
   const Body cow = make_body(*benchmark_cow(), {}, 1);
   const auto backend = make_cpu_backend();

@@ -344,7 +344,7 @@ TEST_CASE("bent polygons are cut as they look from above, and measured", "[polyg
   CHECK(mesh.notes[1].starts_with("1 polygon of more than three corners is not flat (corners up to 0.0"));
 }
 
-TEST_CASE("a polygon of 100,000 corners takes a bounded number of steps and bytes", "[polygon]") {
+TEST_CASE("a polygon of 100,000 corners takes a bounded number of steps and bytes", "[alone][polygon]") {
   const Polygon polygon = comb(50000);
   std::vector<Face> triangles;
   const std::size_t growth = peak_growth([&] { triangles = triangles_of(polygon, PolygonCut::cut); });
