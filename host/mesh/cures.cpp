@@ -17,7 +17,8 @@ std::optional<double> volume_amiss(const RawMesh& mesh, Monitor& monitor) {
   const plan::Bvh tree(mesh.vertices, mesh.faces);
   const SelfIntersections pairs = self_intersections(mesh.vertices, mesh.faces, tree, monitor);
   if (!pairs.complete) return {};
-  const Overlap found = overlap(mesh.vertices, mesh.faces, tree, pairs, monitor);
+  // Few points: a hint is no measurement, and a refusal should not take long.
+  const Overlap found = overlap(mesh.vertices, mesh.faces, tree, pairs, monitor, 0, std::size_t(1) << 14);
   const double least = 1e-6 * volume(mesh.vertices, mesh.faces);
   double amiss = 0;
   for (const RegionVolume& region : {found.overlapped, found.inverted})

@@ -214,8 +214,10 @@ RegionVolume region_volume(std::span<const Vec3> vertices, std::span<const Face>
 /// ratio (M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018). Twice the standard error of as many
 /// random points.
 std::array<RegionVolume, 2> sampled_volumes(std::span<const Vec3> vertices, std::span<const Face> faces,
-                                            const plan::Bvh& tree, Monitor& monitor, unsigned threads) {
-  constexpr std::size_t tasks = 128, points_a_task = 4096;
+                                            const plan::Bvh& tree, Monitor& monitor, unsigned threads,
+                                            std::size_t most_points) {
+  constexpr std::size_t points_a_task = 4096;
+  const std::size_t tasks = std::max<std::size_t>(1, most_points / points_a_task);
   constexpr double ratio = 1.22074408460575947536;
   const Vec3 step(1 / ratio, 1 / (ratio * ratio), 1 / (ratio * ratio * ratio));
   const Vec3 low = tree.nodes()[0].low, sides = tree.nodes()[0].high - low;
@@ -230,7 +232,7 @@ std::array<RegionVolume, 2> sampled_volumes(std::span<const Vec3> vertices, std:
     }
   });
   std::array<RegionVolume, 2> volumes;
-  constexpr double points = tasks * points_a_task;
+  const double points = double(tasks * points_a_task);
   for (std::size_t r = 0; r < volumes.size(); ++r) {
     double part = 0;
     for (const auto& counts : hits) part += double(counts[r]) / points;
@@ -243,14 +245,14 @@ std::array<RegionVolume, 2> sampled_volumes(std::span<const Vec3> vertices, std:
 } // namespace
 
 Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
-                const SelfIntersections& found, Monitor& monitor, unsigned threads) {
+                const SelfIntersections& found, Monitor& monitor, unsigned threads, std::size_t most_points) {
   const Boundary boundary(vertices, faces, tree, found);
   const std::vector<Parts> parts = parts_of_faces(vertices, faces, boundary, monitor, threads);
   std::array<RegionVolume, 2> found_volumes = {region_volume(vertices, faces, boundary, parts, overlapped),
                                                region_volume(vertices, faces, boundary, parts, inverted)};
   const auto vague = [](const RegionVolume& region) { return region.uncertainty > 0.01 * region.volume; };
   if (std::any_of(found_volumes.begin(), found_volumes.end(), vague)) {
-    const auto sampled = sampled_volumes(vertices, faces, tree, monitor, threads);
+    const auto sampled = sampled_volumes(vertices, faces, tree, monitor, threads, most_points);
     for (std::size_t r = 0; r < sampled.size(); ++r)
       if (vague(found_volumes[r]) && sampled[r].uncertainty < found_volumes[r].uncertainty)
         found_volumes[r] = sampled[r];

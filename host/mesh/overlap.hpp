@@ -34,9 +34,11 @@ struct Overlap {
 /// they know better, with twice their standard error.
 ///
 /// Of a closed surface whose edges are run as often one way as the other; for others the result means nothing. `tree` is
-/// that of the faces, `pairs` all their intersections. The same on any number of threads. Throws Error(interrupted).
+/// that of the faces, `pairs` all their intersections; `most_points` are taken where sums leave more than 1 % open. The same on any
+/// number of threads. Throws Error(interrupted).
 Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
-                const SelfIntersections& pairs, Monitor& monitor, unsigned threads = 0);
+                const SelfIntersections& pairs, Monitor& monitor, unsigned threads = 0,
+                std::size_t most_points = std::size_t(1) << 19);
 
 /// Triangles that lie on another surface and cover parts of it.
 struct TriangleSheet {
