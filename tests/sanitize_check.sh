@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # sanitize_check.sh readers|all: runs tests under the address and undefined-behaviour sanitizers. `readers`: the quick cases of
-# readers and host that need neither device nor program, with clang, in the build of the fuzz targets (preset `fuzz`), which
+# readers and host that need no device, with clang (a few run the program in build/release), in the build of the fuzz targets (preset `fuzz`), which
 # are made of the same objects. `all`: every case, in the preset `sanitize`; its memory that the validation layer and the
 # drivers keep to the end of the process is no leak of ours.
 set -euo pipefail

@@ -179,7 +179,7 @@ private:
   std::vector<double> squares_, root_, factors_;
   std::vector<Doubles> rows_;
   Doubles corners_, scaled_;
-  Doubles sizes_; ///< of each block: the corners' distances, and sums of monomials of one, two and three of them
+  Doubles sizes_; ///< for each block the corners' distances, and sums of monomials in one, two and three of them
 };
 
 } // namespace

@@ -180,8 +180,8 @@ private:
     });
   }
 
-  // Where values at the middles of cells give way to means, the middles' sum is off by the first term of Euler and Maclaurin,
-  // which was nothing as long as they went all round: a 24th of the step across the border.
+  // Where values at the middles of cells give way to means, the middles' sum is off by the first term of Euler and Maclaurin:
+  // a 24th of the step across the border. All round the sphere these terms cancel; along a border they do not.
   void mend_border() {
     std::vector<double> changes;
     std::vector<std::size_t> changed;

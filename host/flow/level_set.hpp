@@ -12,8 +12,8 @@ namespace cowgpu {
 
 /// The surface where the signed distance d from a closed surface is `level`, seen from `origin`.
 struct LevelSet {
-  DistanceField& field; ///< of the surface
-  Box box;              ///< of the surface
+  DistanceField& field; ///< distances from the surface
+  Box box;              ///< bounding box of the surface
   Vec3 origin;
   double level; ///< T > 0
 };
@@ -32,8 +32,8 @@ struct LevelSetReport {
   double seconds = 0;
 };
 
-/// For every point of the grid the point on the ray from the origin in its direction with d = T, and of it the closest point
-/// of the surface: x, y, z of F, [3][ring][longitude]. With the inflated body {d <= T} star-shaped about the origin
+/// For every point of the grid the point on the ray from the origin in its direction with d = T, and F, the surface's closest
+/// point to that: its x, y, z, [3][ring][longitude]. With the inflated body {d <= T} star-shaped about the origin
 /// (host/flow/star_shape.hpp) there is one such point; else this is one of several.
 ///
 /// The rays are those of the grid turned by `turn`, a rotation. By Newton's method in a bracket whose lower end has been seen

@@ -32,9 +32,8 @@ namespace cowgpu {
 /// lines.
 ///
 /// Throws Error(file_syntax, file_truncated, file_format, too_large) that begins with `name` and line: a header of another
-/// number of values, one that says another normalisation than a comment, more than 6 words in a row, text among the rows of a file
-/// of ours, one without its convention, and what take_rows() throws. Memory: 48
-/// bytes a row and what take_rows() takes.
+/// number of values, one that says another normalisation than a comment, more than 6 words in a row, text among the rows of a
+/// file of this program, such a file without its convention, and what take_rows() throws. Memory: 48 bytes a row and what take_rows() takes.
 CoefficientSet parse_shtools_text(std::string_view bytes, const std::string& name, std::optional<double> metres = {});
 
 /// Whether a text looks like such a table: more than half of its first lines that hold numbers only are rows,

@@ -30,12 +30,11 @@ struct Overlap {
 /// So nothing is sampled: what is off is rounding, and pieces whose side it gets wrong. These leave a boundary open, so the
 /// uncertainty is estimated by the vector area of what was found as a boundary, which is 0 of a closed one, times the
 /// diagonal of its box, plus 1e-13 of the volume of that box. Where that is above 1 % of the volume, as of sheets that lie
-/// within a rounding of each other but not on each other, winding numbers at 524,288 points of the whole box take over if
+/// within a rounding of each other but not on each other, winding numbers at `most_points` points of the whole box take over if
 /// they know better, with twice their standard error.
 ///
 /// Of a closed surface whose edges are run as often one way as the other; for others the result means nothing. `tree` is
-/// that of the faces, `pairs` all their intersections; `most_points` are taken where sums leave more than 1 % open. The same on any
-/// number of threads. Throws Error(interrupted).
+/// that of the faces, `pairs` all their intersections. The same on any number of threads. Throws Error(interrupted).
 Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
                 const SelfIntersections& pairs, Monitor& monitor, unsigned threads = 0,
                 std::size_t most_points = std::size_t(1) << 19);
