@@ -4,7 +4,7 @@
 #include "host/error.hpp"
 #include "host/physics/paper.hpp"
 #include "host/physics/radiate.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "host/units.hpp"
 
 #include <Eigen/Geometry>

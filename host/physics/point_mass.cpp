@@ -4,7 +4,7 @@
 #include "host/error.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "host/mesh/tensors.hpp"
 #include "host/physics/tensors.hpp"
 #include "host/spectrum/convert.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <Eigen/Geometry>

@@ -4,7 +4,7 @@
 #include "host/io/mesh_source.hpp"
 #include "host/spectrum/difference.hpp"
 #include "host/spectrum/roundtrip.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "tests/support/fields.hpp"
 #include "tests/support/meshes.hpp"
 
