@@ -54,7 +54,7 @@ private:
 };
 
 FlowChoice flow_choice(const Options& options, const ExpansionChoice& choice) {
-  if (options.flow_options && (choice.maps.empty() || choice.maps.back() != "flow"))
+  if (options.flow_options && (choice.maps.empty() || choice.maps.back() != MapMethod::flow))
     throw Error(
         Fault::bad_argument,
         fmt::format(
@@ -130,8 +130,8 @@ void write_plan(const Options& options, const ExpansionChoice& choice, const Bod
                 std::span<const MomentProblem> problems, const Backend& backend) {
   const MemoryNeed need = memory_need(options, choice, problems, backend);
   write_stdout(mesh_line(body.surface.mesh()) + "\n");
-  for (const std::string& map : choice.maps)
-    write_stdout(fmt::format("plan: surface over the {} map to degree {}, {} coefficients of each of six fields\n", map,
+  for (const MapMethod map : choice.maps)
+    write_stdout(fmt::format("plan: surface over the {} map to degree {}, {} coefficients of each of six fields\n", name(map),
                              options.lmax, SphereCoefficients::count(options.lmax)));
   if (choice.mass) write_mass_plan(options, body, problems, backend);
   write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));

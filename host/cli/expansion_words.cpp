@@ -12,7 +12,10 @@
 namespace cowgpu::cli {
 namespace {
 
-constexpr std::array map_names = {"harmonic", "stretch", "smooth", "flow"};
+// Where a method stands among made_maps.
+std::size_t place(MapMethod method) {
+  return std::size_t(std::find(made_maps.begin(), made_maps.end(), method) - made_maps.begin());
+}
 
 } // namespace
 
@@ -22,17 +25,16 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
   choice.map_file = map_file;
   choice.lmax = lmax;
   choice.paper = recipe == "paper";
-  std::array<bool, map_names.size()> wanted{};
+  std::array<bool, made_maps.size()> wanted{};
   std::istringstream list(of + ",");
   for (std::string word; std::getline(list, word, ',');) {
-    const auto map = std::find(map_names.begin(), map_names.end(), word);
     if (word == "all") {
       choice.mass = true;
       wanted.fill(true);
     } else if (word == "mass")
       choice.mass = true;
-    else if (map != map_names.end())
-      wanted[std::size_t(map - map_names.begin())] = true;
+    else if (const auto map = map_method_named(word))
+      wanted[place(*map)] = true;
     else
       throw Error(
           Fault::bad_argument,
@@ -41,14 +43,15 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
                       of, word));
   }
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i]) choice.maps.emplace_back(map_names[i]);
-  if (choice.paper && !wanted[0] && !wanted[3])
+    if (wanted[i]) choice.maps.push_back(made_maps[i]);
+  const bool flow = wanted[place(MapMethod::flow)];
+  if (choice.paper && !wanted[place(MapMethod::harmonic)] && !flow)
     throw Error(
         Fault::bad_argument,
         fmt::format("--recipe paper is about the harmonic map and the flow, and --of {} asks for neither; add --of "
                     "harmonic or --of flow",
                     of));
-  if (!map_file.empty() && (choice.maps.size() != 1 || wanted[3]))
+  if (!map_file.empty() && (choice.maps.size() != 1 || flow))
     throw Error(Fault::bad_argument,
                 fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
                             "with --of harmonic, stretch or smooth",

@@ -41,9 +41,8 @@ std::string short_name(const RawMesh& mesh) {
   return std::filesystem::path(mesh.name).filename();
 }
 
-std::string map_title(const std::string& name) {
-  if (name == "flow") return "gradient flow";
-  return name + " map";
+std::string map_title(std::string_view map) {
+  return map == name(MapMethod::flow) ? "gradient flow" : fmt::format("{} map", map);
 }
 
 /// What a figure is made from.
@@ -74,7 +73,7 @@ public:
           Fault::bad_argument,
           fmt::format("--of {}: the figure '{}' is of one map: harmonic, stretch, smooth or flow", options_.of, name));
     const SurfaceResult& result = results[0];
-    const std::string title = fmt::format("{}, {}", short_name(mesh), map_title(result.name));
+    const std::string title = fmt::format("{}, {}", short_name(mesh), map_title(cowgpu::name(result.of)));
     if (name == "orders")
       return figures::orders_figure(result.expansion, SurfaceFields::xyz, mesh, view, title, *backend_, monitor_);
     if (name == "components")
@@ -93,7 +92,7 @@ private:
       check_surfaces(results);
       return results;
     }
-    for (const std::string& map : choice.maps) {
+    for (const MapMethod map : choice.maps) {
       ExpansionChoice one = choice;
       one.maps = {map};
       try {
@@ -102,7 +101,7 @@ private:
         results.push_back(std::move(of_map.front()));
       } catch (const Error& error) {
         if (error.fault() != Fault::map_failed && error.fault() != Fault::check_failed) throw;
-        say(fmt::format("cowgpu: the {} is left out: {}\n", map_title(map), error.what()));
+        say(fmt::format("cowgpu: the {} is left out: {}\n", map_title(name(map)), error.what()));
       }
     }
     return results;
@@ -156,7 +155,7 @@ private:
   plot::Canvas spectra(plot::PictureFormat format, const ExpansionChoice& choice,
                        const std::vector<SurfaceResult>& results) {
     std::vector<figures::NamedExpansion> named;
-    for (const SurfaceResult& result : results) named.push_back({map_title(result.name), &result.expansion});
+    for (const SurfaceResult& result : results) named.push_back({map_title(name(result.of)), &result.expansion});
     Coefficients mass;
     if (choice.mass) mass = mass_moments();
     return figures::spectra_figure(format, named, choice.mass ? &mass : nullptr);

@@ -65,10 +65,10 @@ SurfaceSource from_mesh(const SurfaceChoice& choice, int largest_order, Backend&
   std::vector<SurfaceResult> results = expand_surfaces(maps, false, *source.body, backend, monitor);
   check_surfaces(results);
   SurfaceResult& result = results.front();
-  source.name = result.name;
+  source.name = name(result.of);
   source.expansion = std::move(result.expansion);
   source.recipe = result.recipe;
-  source.map_method = result.map.method;
+  source.map_method = name(result.map.method);
   for (const std::string& sentence : result.quality.sentences) source.notes.push_back("map: " + sentence);
   return source;
 }

@@ -198,7 +198,7 @@ void from_mesh(const PhysicsOptions& options, const TipChoice& choice, TipInput&
   std::vector<SurfaceResult> results = expand_surfaces(maps, false, body, *input.backend, monitor);
   check_surfaces(results);
   SurfaceResult result = std::move(results.front());
-  input.expansion_name = result.name;
+  input.expansion_name = name(result.of);
   input.expansion = std::move(result.expansion);
   for (const std::string& sentence : result.quality.sentences) input.head.notes.push_back("map: " + sentence);
   if (!body.parts.empty())

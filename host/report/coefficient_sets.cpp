@@ -70,7 +70,7 @@ CoefficientSet surface_set(const ExpandResult& result, const SurfaceResult& surf
   set.origin_kind = surface.origin_kind;
   set.length_unit = length_unit(result.body);
   set.provenance = provenance_of(result);
-  set.remarks = {{"map", surface.map.method}, {"recipe", surface.recipe}};
+  set.remarks = {{"map", std::string(name(surface.map.method))}, {"recipe", surface.recipe}};
   for (const auto& [field, mean] :
        {std::pair("f_dtheta", expansion.mean_dtheta), std::pair("f_dphi", expansion.mean_dphi)}) {
     std::string text;

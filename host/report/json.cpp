@@ -2,6 +2,7 @@
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
@@ -164,7 +165,7 @@ void write_json(const ExpandResult& result, const Sink& sink) {
   if (result.has_mass) write_mass(result, sink);
   bool first = !result.has_mass;
   for (const SurfaceResult& surface : result.surfaces) {
-    sink((first ? "\"" : ",\n \"") + surface.name + "\": ");
+    sink(fmt::format("{}\"{}\": ", first ? "" : ",\n ", name(surface.of)));
     write_surface_json(surface, sink);
     first = false;
   }

@@ -23,9 +23,9 @@ struct FlowChoice {
 /// Which expansions are asked for.
 struct ExpansionChoice {
   bool mass = false;
-  std::vector<std::string> maps; ///< some of "harmonic", "stretch", "smooth", "flow", in this order, each once
-  bool paper = false;            ///< the harmonic map and the flow by the paper's recipe
-  std::string map_file;          ///< a PLY file instead of making the one map, or empty
+  std::vector<MapMethod> maps; ///< some of made_maps, in its order, each once
+  bool paper = false;          ///< the harmonic map and the flow by the paper's recipe
+  std::string map_file;        ///< a PLY file instead of making the one map, or empty
   int lmax = 0;
   FlowChoice flow;
 };
