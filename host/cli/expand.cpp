@@ -95,7 +95,7 @@ MemoryNeed memory_need(const Options& options, const ExpansionChoice& choice, st
                        const Backend& backend) {
   MemoryNeed need = surfaces_memory(choice, problems.front().faces.size(), backend);
   if (!choice.mass) return need;
-  const std::uint64_t result = 16 * Coefficients::count(options.lmax);
+  const std::uint64_t result = 16 * Multipoles::count(options.lmax);
   if (need.host) need.host += result;
   for (const MomentProblem& problem : problems) { // one after the other, beside the sum of those before
     const MemoryNeed one = backend.moments_memory(problem);
@@ -120,7 +120,7 @@ void write_mass_plan(const Options& options, const Body& body, std::span<const M
   write_stdout(
       fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, {:.9g}) "
                   "({}), R = {:.9g}\n",
-                  options.lmax, Coefficients::count(options.lmax), body.origin.x(), body.origin.y(), body.origin.z(),
+                  options.lmax, Multipoles::count(options.lmax), body.origin.x(), body.origin.y(), body.origin.z(),
                   body.origin_kind, body.brillouin_radius));
   write_stdout(fmt::format("work: {} pairs of triangles, {:.3g} of {:.3g} recursion entries after the cut-off {:.0e}\n",
                            pairs, elements, full, options.cut_off));
@@ -131,8 +131,8 @@ void write_plan(const Options& options, const ExpansionChoice& choice, const Bod
   const MemoryNeed need = memory_need(options, choice, problems, backend);
   write_stdout(mesh_line(body.surface.mesh()) + "\n");
   for (const MapMethod map : choice.maps)
-    write_stdout(fmt::format("plan: surface over the {} map to degree {}, {} coefficients of each of six fields\n", name(map),
-                             options.lmax, SphereCoefficients::count(options.lmax)));
+    write_stdout(fmt::format("plan: surface over the {} map to degree {}, {} coefficients of each of six fields\n",
+                             name(map), options.lmax, SphereCoefficients::count(options.lmax)));
   if (choice.mass) write_mass_plan(options, body, problems, backend);
   write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
   write_stdout(
@@ -147,7 +147,7 @@ ExpandResult compute(const Options& options, const ExpansionChoice& choice, cons
   ConsoleMonitor monitor(common.style());
   const std::vector<MomentProblem> problems = mass_problems(body, options.lmax, options.cut_off);
   RunReport run;
-  Coefficients mass;
+  Multipoles mass;
   Accuracy accuracy;
   accuracy.how = Verify::none;
   // First, because maps are what may not be possible.

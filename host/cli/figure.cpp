@@ -127,7 +127,7 @@ private:
           fmt::format("{}, {}", short_name(body_.surface.mesh()), map_title(sources[0].name)), *backend_, monitor_);
     std::vector<figures::NamedExpansion> named;
     for (const SurfaceSource& source : sources) named.push_back({map_title(source.name), &source.expansion});
-    const Coefficients mass = mass_moments();
+    const Multipoles mass = mass_moments();
     return figures::spectra_figure(format, named, &mass);
   }
 
@@ -142,7 +142,7 @@ private:
     return figures::tipping_figure(shown, *backend_, monitor_);
   }
 
-  Coefficients mass_moments() {
+  Multipoles mass_moments() {
     MomentProblem problem;
     problem.vertices = body_.surface.vertices();
     problem.faces = body_.surface.faces();
@@ -156,7 +156,7 @@ private:
                        const std::vector<SurfaceResult>& results) {
     std::vector<figures::NamedExpansion> named;
     for (const SurfaceResult& result : results) named.push_back({map_title(name(result.of)), &result.expansion});
-    Coefficients mass;
+    Multipoles mass;
     if (choice.mass) mass = mass_moments();
     return figures::spectra_figure(format, named, choice.mass ? &mass : nullptr);
   }

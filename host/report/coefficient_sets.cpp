@@ -31,7 +31,7 @@ double second_moment_of(const ExpandResult& result) {
 }
 
 CoefficientSet mass_set(const ExpandResult& result) {
-  const Coefficients& q = result.mass;
+  const Multipoles& q = result.mass;
   CoefficientSet set(q.lmax, 1);
   set.kind = CoefficientKind::multipoles;
   set.form = Form::complex;

@@ -99,7 +99,7 @@ ordered_json json_of(const Accuracy& accuracy) {
 }
 
 // The coefficients do not fit a document in memory at high degree: one row a line, written as they come.
-void write_coefficients(const Coefficients& q, const Sink& sink) {
+void write_coefficients(const Multipoles& q, const Sink& sink) {
   std::string text;
   for (int l = 0; l <= q.lmax; ++l)
     for (int m = 0; m <= l; ++m) {
@@ -141,7 +141,7 @@ void write_mass(const ExpandResult& result, const Sink& sink) {
 } // namespace
 
 std::uint64_t json_bytes(int lmax) {
-  return 4096 + 80 * std::uint64_t(lmax) + 61 * std::uint64_t(Coefficients::count(lmax));
+  return 4096 + 80 * std::uint64_t(lmax) + 61 * std::uint64_t(Multipoles::count(lmax));
 }
 
 void write_json(const ExpandResult& result, const Sink& sink) {

@@ -25,15 +25,15 @@ std::vector<MomentProblem> mass_problems(const Body& body, int lmax, double cut_
   return problems;
 }
 
-Coefficients mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor,
-                          RunReport* report, std::vector<std::vector<double>>* norms) {
-  Coefficients sum;
+Multipoles mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor, RunReport* report,
+                        std::vector<std::vector<double>>* norms) {
+  Multipoles sum;
   RunReport all;
   if (norms) norms->clear();
   for (const MomentProblem& problem : problems) {
     RunReport run;
     const std::optional<MomentProblem> near = near_problem(problem);
-    Coefficients q = backend.moments(near ? *near : problem, monitor, &run);
+    Multipoles q = backend.moments(near ? *near : problem, monitor, &run);
     if (norms) norms->push_back(degree_norms(q));
     if (near) q = translated(problem, *near, q);
     if (&problem == problems.data())
@@ -49,12 +49,6 @@ Coefficients mass_moments(std::span<const MomentProblem> problems, Backend& back
   }
   if (report) *report = std::move(all);
   return sum;
-}
-
-std::vector<double> degree_norms(const Coefficients& q) {
-  std::vector<double> norm;
-  for (int l = 0; l <= q.lmax; ++l) norm.push_back(degree_norm(q, l));
-  return norm;
 }
 
 } // namespace cowgpu

@@ -15,10 +15,7 @@ std::vector<MomentProblem> mass_problems(const Body& body, int lmax, double cut_
 
 /// The sum of the problems' moments, each of those far from its origin by way of near_problem() (host/spectrum/translate.hpp);
 /// `report` sums up what the backend reports, `norms` holds the norm of each degree of what it computed for each problem.
-Coefficients mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor,
-                          RunReport* report = nullptr, std::vector<std::vector<double>>* norms = nullptr);
-
-/// degree_norm() of degrees 0 to lmax.
-std::vector<double> degree_norms(const Coefficients& moments);
+Multipoles mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor,
+                        RunReport* report = nullptr, std::vector<std::vector<double>>* norms = nullptr);
 
 } // namespace cowgpu

@@ -41,7 +41,7 @@ struct Accuracy {
 /// Degrees 0 and 2 of `q` against the body's mass and Cartesian quadrupole tensor, which share no code with any path:
 /// Q_00 = M/sqrt(4 pi), Q_20 = sqrt(5/pi)/4 T_zz, Q_21 = -sqrt(5/24pi) (T_xz + i T_yz), Q_22 = sqrt(5/96pi) (T_xx - T_yy +
 /// 2i T_xy), T = integral of density (3 x x - r^2). `estimate` is E_l of `q`.
-Agreement compare_with_tensors(const Body& body, const Coefficients& q, std::span<const double> estimate);
+Agreement compare_with_tensors(const Body& body, const Multipoles& q, std::span<const double> estimate);
 
 /// Bound of the host bytes verify_moments() allocates beside what the backend needs for the same triangles.
 std::uint64_t verify_bytes(const MomentProblem& problem, Verify how);
@@ -58,7 +58,7 @@ Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify h
 
 /// verify_moments() of each problem or its near_problem(), and the estimate for `mass`, the sum of their moments, of which
 /// mass_moments() gave the `norms`: triangles are counted over all, agreements are the worst of each pair of paths.
-Accuracy verify_all(std::span<const MomentProblem> problems, const Coefficients& mass,
+Accuracy verify_all(std::span<const MomentProblem> problems, const Multipoles& mass,
                     std::span<const std::vector<double>> norms, Backend& backend, Verify how, std::uint64_t seed,
                     Monitor& monitor);
 
