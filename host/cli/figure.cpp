@@ -1,13 +1,13 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/drawing.hpp"
 #include "host/cli/expansion_words.hpp"
-#include "host/cli/surface_source.hpp"
 #include "host/cli/tip_input.hpp"
 #include "host/requests/expand_surfaces.hpp"
 
 #include "host/error.hpp"
 #include "host/figures/figures.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
 

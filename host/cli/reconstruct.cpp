@@ -1,7 +1,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/order_list.hpp"
 #include "host/cli/surface_outputs.hpp"
-#include "host/cli/surface_source.hpp"
+#include "host/cli/expansion_words.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
@@ -9,6 +9,7 @@
 #include "host/report/json_parts.hpp"
 #include "host/report/order_names.hpp"
 #include "host/report/reconstruct_report.hpp"
+#include "host/requests/surface_source.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>

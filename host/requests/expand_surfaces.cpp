@@ -25,8 +25,8 @@ SphereMap make_map(MapMethod method, bool paper, const ManifoldSurface& surface,
   return harmonic_map(surface, paper ? HarmonicOptions::paper_recipe() : HarmonicOptions{}, monitor);
 }
 
-SurfaceResult expand_over(MapMethod method, const ExpansionChoice& choice, bool estimate_aliasing,
-                          const Body& body, const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
+SurfaceResult expand_over(MapMethod method, const ExpansionChoice& choice, bool estimate_aliasing, const Body& body,
+                          const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
   const bool paper = choice.paper && (method == MapMethod::harmonic || method == MapMethod::flow);
   SurfaceResult result;
   result.recipe = paper ? "paper" : "default";
@@ -70,6 +70,30 @@ SurfaceResult expand_over(MapMethod method, const ExpansionChoice& choice, bool 
 }
 
 } // namespace
+
+void check_expansions(const ExpansionChoice& choice) {
+  const auto asked_for = [&](MapMethod map) {
+    return std::find(choice.maps.begin(), choice.maps.end(), map) != choice.maps.end();
+  };
+  std::vector<std::string_view> words;
+  if (choice.mass) words.emplace_back("mass");
+  for (const MapMethod map : choice.maps) words.push_back(name(map));
+  const bool flow = asked_for(MapMethod::flow);
+  if (choice.paper && !asked_for(MapMethod::harmonic) && !flow)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--recipe paper is about the harmonic map and the flow, and --of {} asks for neither; add --of "
+                    "harmonic or --of flow",
+                    fmt::join(words, ",")));
+  if (!choice.map_file.empty() && (choice.maps.size() != 1 || flow))
+    throw Error(Fault::bad_argument,
+                fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
+                            "with --of harmonic, stretch or smooth",
+                            choice.map_file, fmt::join(words, ","),
+                            choice.maps.empty()      ? "none"
+                            : choice.maps.size() > 1 ? "several"
+                                                     : "the flow, whose map is not kept in a file"));
+}
 
 MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend) {
   if (choice.maps.empty()) return {};

@@ -30,6 +30,10 @@ struct ExpansionChoice {
   FlowChoice flow;
 };
 
+/// Throws Error(bad_argument) for the paper's recipe without the harmonic map or the flow, and for a map file without just one
+/// map that it stands for.
+void check_expansions(const ExpansionChoice& choice);
+
 /// What the largest of the surface expansions needs, and all results; nothing where none is asked for.
 MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend);
 
