@@ -27,6 +27,10 @@ enum class CoefficientKind {
 std::string_view name(CoefficientKind kind);
 std::optional<CoefficientKind> kind_named(std::string_view word);
 
+/// Name of the mass multipoles among the expansions of a result; surfaces have the names of their maps
+/// (host/map/map_method.hpp).
+inline constexpr const char* mass_expansion = "mass";
+
 /// The length and mass unit of a body whose units nobody stated.
 inline constexpr std::string_view mesh_length_unit = "of the mesh", mesh_mass_unit = "density times cubed length";
 

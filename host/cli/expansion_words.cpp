@@ -1,5 +1,6 @@
 #include "host/cli/expansion_words.hpp"
 
+#include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 #include "host/number.hpp"
 
@@ -22,7 +23,7 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
     if (word == "all") {
       choice.mass = true;
       wanted.insert(made_maps.begin(), made_maps.end());
-    } else if (word == "mass")
+    } else if (word == mass_expansion)
       choice.mass = true;
     else if (const auto map = map_method_named(word))
       wanted.insert(*map);

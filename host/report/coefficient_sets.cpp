@@ -40,7 +40,7 @@ CoefficientSet mass_set(const ExpandResult& result) {
       set.first[set.index(0, l, m)] = q(l, m).real();
       set.second[set.index(0, l, m)] = q(l, m).imag();
     }
-  set.names = {"mass"};
+  set.names = {mass_expansion};
   set.reference_radius = q.reference_radius;
   set.brillouin_radius = result.body.brillouin_radius;
   set.origin = q.origin;

@@ -1,3 +1,4 @@
+#include "host/coefficient_set.hpp"
 #include "host/io/number.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
@@ -133,7 +134,7 @@ void write_mass(const ExpandResult& result, const Sink& sink) {
                     "; Q_lm = value * reference_radius^l"},
       {"density", result.mass.density},
       {"cut_off", result.cut_off}};
-  sink("\"mass\": " + json_members(mass) + ",\n \"coefficients\": [");
+  sink(fmt::format("\"{}\": ", mass_expansion) + json_members(mass) + ",\n \"coefficients\": [");
   write_coefficients(result.mass, sink);
   sink("\n]}");
 }
