@@ -59,6 +59,7 @@ public:
     const std::string date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
     auto start = Clock::now();
     field_ = backend_->distance_field(mesh_.vertices, mesh_.faces);
+    field_->prepare();
     const double ours = seconds_since(start);
     open_gpu();
     start = Clock::now();
@@ -97,6 +98,7 @@ private:
       const auto backend = make_gpu_backend({});
       gpu_name_ = backend->facts().name;
       gpu_field_ = backend->distance_field(mesh_.vertices, mesh_.faces);
+      gpu_field_->prepare();
     } catch (const Error& error) {
       say("no Vulkan device: {}\n", error.what());
     }

@@ -82,6 +82,7 @@ private:
       options.device = options_.device;
       gpu_ = make_gpu_backend(options);
       gpu_flow_ = gpu_->distance_flow(mesh_.vertices, mesh_.faces);
+      gpu_flow_->prepare();
     } catch (const Error& error) {
       say("no Vulkan device: {}\n", error.what());
       gpu_.reset();

@@ -151,8 +151,9 @@ private:
     for (int run = 0; run < options_.runs; ++run) {
       time(maps, [&] { (void)map(method); });
       for (std::size_t p = 0; p < paths_.size(); ++p) {
-        time(sampling[p],
-             [&] { (void)paths_[p].backend->sample(first.positions, surface_.faces(), grid, silent_monitor()); });
+        time(sampling[p], [&] {
+          (void)paths_[p].backend->sphere_sampler(grid)->sample(first.positions, surface_.faces(), silent_monitor());
+        });
         time(expansions[p], [&] { (void)expand(paths_[p], first, options); });
       }
     }

@@ -77,7 +77,7 @@ struct Path {
   void run(const MomentProblem& problem, bool timed = true) {
     Monitor monitor;
     const auto start = Clock::now();
-    result = backend->moments(problem, monitor, &report);
+    result = backend->moments(problem)->run(monitor, &report);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     if (!timed) {
       first = seconds;

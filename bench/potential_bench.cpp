@@ -81,7 +81,8 @@ public:
       for (int run = 0; run < options_.runs; ++run)
         for (std::size_t b = 0; b < backends_.size(); ++b) {
           RunReport report;
-          const PotentialField field = backends_[b]->potential({q, points, lmax}, silent_monitor(), &report);
+          const PotentialField field =
+              backends_[b]->exterior_potential({q, lmax})->at(points, silent_monitor(), &report);
           seconds[b].push_back(report.seconds);
           if (run == 0) verify(backends_[b]->facts().type, lmax, field, truth);
         }

@@ -89,7 +89,7 @@ private:
     Monitor silent;
     RunReport report;
     const std::clock_t before = std::clock();
-    SphereSamples result = path.backend->sample(map.positions, map.faces, grid, silent, &report);
+    SphereSamples result = path.backend->sphere_sampler(grid)->sample(map.positions, map.faces, silent, &report);
     if (timed) {
       path.cpu.push_back(double(std::clock() - before) / CLOCKS_PER_SEC);
       path.wall.push_back(report.seconds);

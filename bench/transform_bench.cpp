@@ -159,6 +159,7 @@ private:
           path.transform.reset();
           const auto start = Clock::now();
           path.transform = path.backend->sphere_transform(grid, lmax);
+          path.transform->prepare();
           times.push_back(seconds_since(start));
           if (times.back() > slow_call) break;
         }
@@ -343,7 +344,7 @@ private:
         for (int run = 0; run < (lmax > 1100 ? 3 : options_.runs); ++run) call(path, 1, coefficients, true);
         const double error = largest_difference(path.coefficients, coefficients);
         const double n = lmax + 1, synthesis = median(path.synthesis.wall), analysis = median(path.analysis.wall);
-        const MemoryNeed need = path.backend->sphere_transform_memory(grid, lmax, 1);
+        const MemoryNeed need = path.transform->memory(1);
         const double bytes = double(need.host + need.device);
         const bool good = error <= round_trip_bound(lmax);
         passed_ = passed_ && good;

@@ -5,12 +5,10 @@
 #include "host/distance_field.hpp"
 #include "host/flow.hpp"
 #include "host/image.hpp"
-#include "host/moment_problem.hpp"
+#include "host/moments.hpp"
 #include "host/monitor.hpp"
-#include "host/multipoles.hpp"
 #include "host/potential.hpp"
 #include "host/render.hpp"
-#include "host/run_report.hpp"
 #include "host/sphere_samples.hpp"
 #include "host/sphere_transform.hpp"
 #include "host/types.hpp"
@@ -29,58 +27,28 @@ public:
   virtual ~Backend() = default;
   virtual const DeviceFacts& facts() const = 0;
 
-  /// Exact multipole moments of the signed tetrahedra (origin, face): the mathematics stands in host/plan/moments.hpp. Throws
-  /// Error(bad_argument) for a problem out of range, too_large, device_failed, device_lost, interrupted. The same problem
-  /// on the same device gives the same bits.
-  virtual Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report = nullptr) = 0;
+  // What these return is cheap to make: it allocates, builds tables and opens pipelines when it is used, or by its prepare().
+  // Its memory() tells before how much that will be. It keeps what it needs of the backend alive.
 
-  /// Upper bound of the memory moments() allocates, its result included.
-  virtual MemoryNeed moments_memory(const MomentProblem& problem) const = 0;
+  /// The verb `moments`.
+  virtual std::unique_ptr<PreparedMoments> moments(const MomentProblem& problem) const = 0;
 
-  /// The verbs `analyse` and `synthesise` on a grid, to degree lmax <= grid.lmax: recurrence coefficients and start values
-  /// are made here. Throws Error(bad_argument, too_large, device_failed, device_lost).
-  virtual std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) = 0;
+  /// The verbs `analyse` and `synthesise` on a grid. Throws Error(bad_argument) unless 0 <= lmax <= grid.lmax.
+  virtual std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) const = 0;
 
-  /// Upper bound of the memory a transform of so many fields allocates, beside its input and output: O(lmax^2 + points).
-  virtual MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const = 0;
+  /// The verb `sample` on a grid.
+  virtual std::unique_ptr<SphereSampler> sphere_sampler(const SphereGrid& grid) const = 0;
 
-  /// For every point of the grid the triangle of a map to the sphere that the ray from the centre in its direction
-  /// (SphereDirections) meets, and where: `positions` are unit vectors, one per vertex, to 1e-9. A triangle holds its edges
-  /// and corners; signs are exact, so a closed mesh leaves no gap. Where several triangles hold a direction, the least
-  /// (flipped, face index) has it, flipped meaning det(a, b, c) < 0; triangles with det 0 hold none (host/plan/sample.hpp).
-  /// Every path gives the same faces; weights agree to 1e-15. Throws Error(map_failed) for a direction that no triangle
-  /// holds, bad_argument, too_large, device_failed, device_lost, interrupted. Of the report, seconds, setup_seconds and
-  /// kernels are set.
-  virtual SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
-                               Monitor& monitor, RunReport* report = nullptr) = 0;
-
-  /// Upper bound of the memory sample() allocates for so many faces, its result included.
-  virtual MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const = 0;
-
-  /// The verb `closest` on a triangle surface, which is copied: trees are built here. Throws what check_distance_surface
-  /// throws, too_large, device_failed, device_lost. Every path gives the same bits (host/gpu/closest.hpp).
+  /// The verb `closest` on a triangle surface. Every path gives the same bits (host/gpu/closest.hpp).
   virtual std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices,
-                                                        std::span<const Face> faces) = 0;
+                                                        std::span<const Face> faces) const = 0;
 
-  /// Upper bound of the memory a field and a call of closest() with so many queries allocate, its result included.
-  virtual MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces,
-                                           std::uint64_t queries) const = 0;
+  /// The verb `flow` off a closed triangle surface. Every path gives the same bits (host/gpu/flow.hpp).
+  virtual std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices,
+                                                      std::span<const Face> faces) const = 0;
 
-  /// The verb `flow` off a closed triangle surface, which is copied. Throws what distance_field throws, and mesh_open. Every
-  /// path gives the same bits (host/gpu/flow.hpp).
-  virtual std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces) = 0;
-
-  /// Upper bound of the memory a flow of so many starts allocates, its result included, streamlines not.
-  virtual MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const = 0;
-
-  /// V(x) = integral of density(y) / |x - y| outside a body, its gradient and its second derivatives, from its moments: the
-  /// mathematics stands in host/plan/potential.hpp. Throws Error(point_inside) for a point nearer to the moments' origin
-  /// than R, bad_argument, too_large, device_failed, device_lost, interrupted. The same problem on the same device gives the
-  /// same bits. Of the report, seconds, setup_seconds, elements, full_elements and kernels are set.
-  virtual PotentialField potential(const PotentialProblem& problem, Monitor& monitor, RunReport* report = nullptr) = 0;
-
-  /// Upper bound of the memory potential() allocates at so many points, its result included.
-  virtual MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives) const = 0;
+  /// The verb `potential`.
+  virtual std::unique_ptr<ExteriorPotential> exterior_potential(const PotentialProblem& problem) const = 0;
 
   /// The scene as a picture: smooth or flat shading, light from the upper left, the light of sky and ground where the
   /// surroundings let it through, edges with 16 samples a pixel. Every path and any number of threads give the same

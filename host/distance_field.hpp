@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/kernel_time.hpp"
+#include "host/memory_need.hpp"
 #include "host/monitor.hpp"
 #include "host/types.hpp"
 
@@ -63,7 +64,8 @@ struct ClosestReport {
   std::vector<KernelTime> kernels; ///< empty on the CPU path
 };
 
-/// A triangle surface, prepared once for many queries.
+/// A triangle surface, prepared once for many queries: trees are built by prepare(), or by the first call. The surface's
+/// vertices and faces must live until then.
 ///
 /// Distances and points are those of the triangles as sets of points: edges and corners belong to them, and triangles
 /// without area are segments or points. Errors are about 2e-16 of the surface's diagonal or of the distance, whichever is
@@ -80,7 +82,13 @@ class DistanceField {
 public:
   virtual ~DistanceField() = default;
 
-  /// Throws Error(bad_argument) for a query with a coordinate that is not finite or beyond 1e100, mesh_open for a signed
+  /// Upper bound of what the field and a call with so many queries allocate, the result included. It reads the sizes of the
+  /// surface alone.
+  virtual MemoryNeed memory(std::uint64_t queries) const = 0;
+  /// Builds the trees unless they are there. Throws what check_distance_surface throws, too_large, device_failed, device_lost.
+  virtual void prepare() = 0;
+
+  /// Throws what prepare() throws, Error(bad_argument) for a query with a coordinate that is not finite or beyond 1e100, mesh_open for a signed
   /// distance from a surface whose edges are not run as often one way as the other, too_large, device_failed, device_lost,
   /// interrupted. Takes 76 bytes a query for the result and 20 for the order.
   virtual ClosestPoints closest(std::span<const Vec3> queries, const ClosestOptions& options, Monitor& monitor,

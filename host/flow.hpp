@@ -8,6 +8,7 @@
 #pragma once
 
 #include "host/kernel_time.hpp"
+#include "host/memory_need.hpp"
 #include "host/monitor.hpp"
 #include "host/types.hpp"
 
@@ -66,17 +67,24 @@ struct FlowReport {
   std::vector<KernelTime> kernels;  ///< empty on the CPU path
 };
 
-/// A closed surface to flow off, prepared once for many flows. Not for several threads at once.
+/// A closed surface to flow off, prepared once for many flows: trees are built by prepare(), or by the first call. The
+/// surface's vertices and faces must live until then. Not for several threads at once.
 class DistanceFlow {
 public:
   virtual ~DistanceFlow() = default;
+
+  /// Upper bound of what the surface's trees and a flow of so many starts allocate, the result included, streamlines not. It
+  /// reads the sizes of the surface alone.
+  virtual MemoryNeed memory(std::uint64_t starts) const = 0;
+  /// Builds the trees unless they are there. Throws what DistanceField::prepare throws, and mesh_open.
+  virtual void prepare() = 0;
 
   /// Flows every start. `normals` is empty, or holds one vector a start: where it is not zero, the start lies on the
   /// surface and leaves along it (unit length; angle-weighted at edges and vertices: at a convex one every direction of
   /// the normal cone is a solution, at others the flow leaves what is not). Starts without one that lie on the surface
   /// leave along a nearest face's normal. Backward takes no normals.
   ///
-  /// Throws Error(bad_argument) for options out of range or starts that are not finite, interrupted. The same input gives
+  /// Throws what prepare() throws, Error(bad_argument) for options out of range or starts that are not finite, interrupted. The same input gives
   /// the same bits on any number of threads.
   virtual FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
                           Monitor& monitor, FlowReport* report = nullptr) = 0;

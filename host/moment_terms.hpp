@@ -20,7 +20,7 @@ struct MomentTerms {
 
 /// The moments of `problem` in double precision by the recursion of host/reference/moments.hpp: orthonormal harmonics with
 /// the square roots of their gradients, no pairs, no cut-off but where a degree's bound proves a triangle to be below 1e-18 of
-/// it. Backend::moments() of every kind works in another basis, by pairs and in another order, so that what both agree on is
+/// it. PreparedMoments of every path works in another basis, by pairs and in another order, so that what both agree on is
 /// right to rounding. Triangles are the lanes of SIMD vectors. Runs on up to `threads` threads (0: all); the bits do not
 /// depend on them. Throws Error(interrupted).
 MomentTerms moment_terms(const MomentProblem& problem, unsigned threads, const Monitor& monitor);

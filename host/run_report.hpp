@@ -1,4 +1,4 @@
-// What a verb of the engine did, and how much memory it needs.
+// What a verb of the engine did.
 #pragma once
 
 #include "host/kernel_time.hpp"
@@ -16,12 +16,6 @@ struct RunReport {
   double full_elements = 0;        ///< the same without the cut-off
   std::uint64_t pairs = 0;         ///< pairs (and leftover single triangles) of the plan
   std::vector<KernelTime> kernels; ///< empty on the CPU path
-};
-
-/// Memory a verb needs, for --dry-run: bytes on the host, bytes on the device.
-struct MemoryNeed {
-  std::uint64_t host = 0;
-  std::uint64_t device = 0;
 };
 
 } // namespace cowgpu

@@ -60,6 +60,7 @@ template <class Work>
 void SphereTransform::timed(int fields, std::size_t coefficients, std::size_t values, TransformReport* report,
                             const Work& work) {
   check(fields, coefficients, values);
+  prepare();
   const auto start = Clock::now();
   TransformReport own;
   if (fields > 0) work(own);

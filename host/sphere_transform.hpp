@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/kernel_time.hpp"
+#include "host/memory_need.hpp"
 #include "host/monitor.hpp"
 #include "host/sphere_coefficients.hpp"
 #include "host/sphere_grid.hpp"
@@ -25,7 +26,7 @@ struct TransformReport {
 };
 
 /// Transforms between real fields on `grid` and their coefficients to degree lmax <= grid.lmax, prepared once for many
-/// calls. Layouts: SphereCoefficients (fields, then m, then l) and [field][ring][longitude]. Several fields of one call
+/// calls: recurrence coefficients and start values are made by prepare(), or by the first call. Layouts: SphereCoefficients (fields, then m, then l) and [field][ring][longitude]. Several fields of one call
 /// share the Legendre recursion. Rings are transformed in pairs, north and south of the equator (Ishioka, J. Meteor. Soc.
 /// Japan 96 (2018) 241; host/plan/legendre.hpp).
 ///
@@ -33,9 +34,8 @@ struct TransformReport {
 ///   <a, b> = sum over l and m = -l ... l of conj(a_lm) b_lm  and  <f, g> = sum over the points of f g,
 /// analysis is A = S* W and its adjoint A* = W S.
 ///
-/// Complex fields are pairs of real ones (host/spectrum/complex_fields.hpp). Beside input and output a transform takes
-/// O(lmax^2 + points) of memory (Backend::sphere_transform_memory). Values that are not finite, or whose sums overflow, spread
-/// as IEEE arithmetic has it; nothing is thrown for them. `fields` is 0 to most_fields.
+/// Complex fields are pairs of real ones (host/spectrum/complex_fields.hpp). Values that are not finite, or whose sums
+/// overflow, spread as IEEE arithmetic has it; nothing is thrown for them. `fields` is 0 to most_fields.
 ///
 /// Keeps what it needs of its backend alive. Not for several threads at once. All throw Error(bad_argument) for spans of the
 /// wrong size, Error(interrupted), and on Vulkan Error(device_failed, device_lost). The same input on the same device gives
@@ -46,6 +46,12 @@ public:
 
   const SphereGrid& grid() const { return grid_; }
   int lmax() const { return lmax_; }
+
+  /// Upper bound of what a transform of so many fields allocates, tables included, beside its input and output: O(lmax^2 +
+  /// points). It reads the numbers of the grid, not its rings.
+  virtual MemoryNeed memory(int fields) const = 0;
+  /// Makes the tables unless they are there.
+  virtual void prepare() = 0;
 
   /// f = S a. Imaginary parts of a_l0 are ignored.
   void synthesise(int fields, std::span<const std::complex<double>> coefficients, std::span<double> values,

@@ -62,7 +62,7 @@ void run(const Options& options, Common& common) {
   for (const int lmax : options.lmax) {
     const MomentProblem problem = mass_problems(body, lmax, options.cut_off).front();
     for (Path& path : paths) {
-      path.backend->moments(problem, monitor); // warms up
+      path.backend->moments(problem)->run(monitor); // warms up
       path.seconds.clear();
     }
     // Any of the paths will do as a measure of the others; the sample has the reference too.
@@ -75,7 +75,7 @@ void run(const Options& options, Common& common) {
     }
     for (int i = 0; i < options.runs; ++i)
       for (Path& path : paths) {
-        path.backend->moments(problem, monitor, &path.report);
+        path.backend->moments(problem)->run(monitor, &path.report);
         path.seconds.push_back(path.report.seconds);
       }
     const double base = median(paths[0].seconds);

@@ -121,8 +121,8 @@ void write_text_report(const Options& options, const Run& run, const Summary& su
 }
 
 // Queries, result, and a file's image: netCDF or text.
-MemoryNeed memory_need(const Backend& backend, const Run& run, std::size_t count) {
-  MemoryNeed need = backend.distance_field_memory(run.mesh.vertices.size(), run.mesh.faces.size(), count);
+MemoryNeed memory_need(const DistanceField& field, std::size_t count) {
+  MemoryNeed need = field.memory(count);
   need.host += 24 * count + 152 * count;
   return need;
 }
@@ -170,7 +170,8 @@ void run(const Options& options, const Common& common) {
   if (!note.empty()) run.notes.push_back(note);
   run.device = backend->facts();
   if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
-  const MemoryNeed need = memory_need(*backend, run, count);
+  const auto field = backend->distance_field(run.mesh.vertices, run.mesh.faces);
+  const MemoryNeed need = memory_need(*field, count);
   check_memory(need, *backend, options.grid ? "lower --grid" : "pass fewer points at once");
   if (options.dry_run) {
     write_stdout(fmt::format("plan: {} distances of {} points from {} triangles\n",
@@ -182,7 +183,7 @@ void run(const Options& options, const Common& common) {
     return;
   }
   if (run.lattice) run.queries = run.lattice->points();
-  const auto field = backend->distance_field(run.mesh.vertices, run.mesh.faces);
+  field->prepare();
   run.setup_seconds = seconds_since(start);
   const ClosestPoints points = field->closest(run.queries, {!options.without_sign}, monitor, &run.report);
   monitor.clear();

@@ -149,7 +149,7 @@ private:
     problem.origin = body_.origin;
     problem.reference_radius = body_.brillouin_radius;
     problem.lmax = options_.lmax;
-    return backend_->moments(problem, monitor_);
+    return backend_->moments(problem)->run(monitor_);
   }
 
   plot::Canvas spectra(plot::PictureFormat format, const ExpansionChoice& choice,

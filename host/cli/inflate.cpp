@@ -255,9 +255,7 @@ void run(const Options& options, const Common& common) {
   const auto field = backend->distance_field(body.surface.vertices(), body.surface.faces());
   // At most a quarter of the cubes is near the level, in thin bodies and for coarse lattices.
   const auto cubes = std::uint64_t(options.cells) * std::uint64_t(options.cells) * std::uint64_t(options.cells);
-  MemoryNeed need =
-      backend->distance_field_memory(body.surface.vertices().size(), body.surface.faces().size(),
-                                     cubes / 64 + 16 * std::uint64_t(options.cells) * std::uint64_t(options.cells));
+  MemoryNeed need = field->memory(cubes / 64 + 16 * std::uint64_t(options.cells) * std::uint64_t(options.cells));
   need.host += 600 * 6 * std::uint64_t(options.cells) * std::uint64_t(options.cells);
   if (!levels.empty()) check_memory(need, *backend, "lower --cells");
   std::vector<Inflated> bodies;

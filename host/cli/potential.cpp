@@ -154,7 +154,8 @@ void compute(const PhysicsInput& input, const Options& options, const Multipoles
   if (derivatives == Derivatives::second) s.field.hessian.resize(count);
   const Multipoles reach = s.radius_known ? moments : continued_down(moments, s);
   if (!outside.empty())
-    take(backend.potential({reach, chosen(s.places.points, outside, s.frame.origin), s.lmax, derivatives}, monitor),
+    take(backend.exterior_potential({reach, s.lmax, derivatives})
+             ->at(chosen(s.places.points, outside, s.frame.origin), monitor),
          outside, s.field);
   if (inside.empty()) return;
   const std::vector<Vec3> points = chosen(s.places.points, inside, Vec3::Zero());
@@ -402,7 +403,8 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
   s.radius_known = placed.radius_known;
   if (input.coefficients) s.reference_radius = *input.coefficients->reference_radius * placed.metres;
   const auto check_count = [&](std::size_t count) {
-    MemoryNeed need = backend->potential_memory(count, s.lmax, Derivatives(options.derivatives));
+    MemoryNeed need =
+        backend->exterior_potential({placed.moments, s.lmax, Derivatives(options.derivatives)})->memory(count);
     need.host += 64 * count + (options.output.empty() ? 0 : potential_file_bytes(count));
     check_memory(need, *backend, options.exact ? "ask for fewer points" : "ask for fewer points or a lower --order");
   };

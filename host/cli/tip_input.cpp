@@ -194,7 +194,8 @@ void from_mesh(const PhysicsOptions& options, const TipChoice& choice, TipInput&
   std::string note;
   input.backend = open_backend(common, &note);
   if (!note.empty()) input.head.notes.push_back(note);
-  check_memory(surfaces_memory(maps, body.surface.faces().size(), *input.backend), *input.backend, "lower --lmax");
+  check_memory(surfaces_memory(maps, body.surface.vertices(), body.surface.faces(), *input.backend), *input.backend,
+               "lower --lmax");
   std::vector<SurfaceResult> results = expand_surfaces(maps, false, body, *input.backend, monitor);
   check_surfaces(results);
   SurfaceResult result = std::move(results.front());

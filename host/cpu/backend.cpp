@@ -11,8 +11,6 @@
 #include "host/cpu/sample.hpp"
 #include "host/cpu/sphere_transform.hpp"
 #include "host/parallel.hpp"
-#include "host/plan/closest_call.hpp"
-#include "host/plan/flow_call.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -43,42 +41,25 @@ public:
   }
 
   const DeviceFacts& facts() const override { return facts_; }
-  Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
-    return cpu::moments(problem, threads_, monitor, report);
+  std::unique_ptr<PreparedMoments> moments(const MomentProblem& problem) const override {
+    return cpu::moments(problem, threads_);
   }
-  MemoryNeed moments_memory(const MomentProblem& problem) const override {
-    return {cpu::moments_bytes(problem, threads_), 0};
-  }
-  std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) override {
+  std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) const override {
     return cpu::sphere_transform(grid, lmax, threads_);
   }
-  MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
-    return cpu::sphere_transform_memory(grid, lmax, fields, threads_);
+  std::unique_ptr<SphereSampler> sphere_sampler(const SphereGrid& grid) const override {
+    return cpu::sphere_sampler(grid, threads_);
   }
-  SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
-                       Monitor& monitor, RunReport* report) override {
-    return cpu::sample(positions, faces, grid, threads_, monitor, report);
-  }
-  MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const override {
-    return {cpu::sample_bytes(faces, grid), 0};
-  }
-  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces) override {
+  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices,
+                                                std::span<const Face> faces) const override {
     return cpu::distance_field(vertices, faces, threads_);
   }
-  MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) const override {
-    return {plan::distance_field_bytes(vertices, faces, queries), 0};
-  }
-  std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces) override {
+  std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices,
+                                              std::span<const Face> faces) const override {
     return cpu::distance_flow(vertices, faces, threads_);
   }
-  MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const override {
-    return {plan::distance_flow_bytes(vertices, faces, starts), 0};
-  }
-  PotentialField potential(const PotentialProblem& problem, Monitor& monitor, RunReport* report) override {
-    return cpu::potential(problem, threads_, monitor, report);
-  }
-  MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives) const override {
-    return {cpu::potential_bytes(points, lmax, derivatives), 0};
+  std::unique_ptr<ExteriorPotential> exterior_potential(const PotentialProblem& problem) const override {
+    return cpu::exterior_potential(problem, threads_);
   }
   Image render(const RenderScene& scene, Monitor& monitor) override { return cpu::render(scene, threads_, monitor); }
   double measured_peak() override { return cpu::peak(threads_); }

@@ -8,7 +8,7 @@
 
 namespace cowgpu::cpu {
 
-/// On `threads` threads (0: all). Throws what check_distance_surface throws.
+/// On `threads` threads (0: all).
 std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces,
                                               unsigned threads);
 

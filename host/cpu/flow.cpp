@@ -4,6 +4,7 @@
 #include "host/plan/flow_call.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace cowgpu::cpu {
 namespace {
@@ -13,11 +14,20 @@ constexpr std::size_t batch = 512;
 class CpuFlow final : public DistanceFlow {
 public:
   CpuFlow(std::span<const Vec3> vertices, std::span<const Face> faces, unsigned threads)
-      : surface_(vertices, faces), threads_(threads) {}
+      : vertices_(vertices), faces_(faces), threads_(threads) {}
+
+  MemoryNeed memory(std::uint64_t starts) const override {
+    return {plan::distance_flow_bytes(vertices_.size(), faces_.size(), starts), 0};
+  }
+
+  void prepare() override {
+    if (!surface_) surface_.emplace(vertices_, faces_);
+  }
 
   FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
                   Monitor& monitor, FlowReport* report) override {
-    plan::FlowCall call(surface_, starts, normals, options, threads_);
+    prepare();
+    plan::FlowCall call(*surface_, starts, normals, options, threads_);
     const std::size_t tasks = (call.size() + batch - 1) / batch;
     parallel_for(threads_, tasks, [&](std::size_t task, unsigned thread) {
       if (thread == 0) monitor.progress("flowing points", double(task) / double(tasks));
@@ -26,8 +36,8 @@ public:
       for (std::size_t i = first; i < std::min(call.size(), first + batch); ++i) {
         if (i % 64 == 0) check_stop(monitor);
         plan::FlowRun run(call, call.order()[i]);
-        near = surface_.nearest(run.query(), near);
-        for (run.answer(near); !run.done();) run.answer(surface_.nearest(run.query(), run.warm()));
+        near = surface_->nearest(run.query(), near);
+        for (run.answer(near); !run.done();) run.answer(surface_->nearest(run.query(), run.warm()));
       }
     });
     monitor.progress("flowing points", 1);
@@ -35,8 +45,10 @@ public:
   }
 
 private:
-  plan::FlowSurface surface_;
+  std::span<const Vec3> vertices_;
+  std::span<const Face> faces_;
   unsigned threads_;
+  std::optional<plan::FlowSurface> surface_;
 };
 
 } // namespace

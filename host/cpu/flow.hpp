@@ -8,7 +8,7 @@
 
 namespace cowgpu::cpu {
 
-/// On `threads` threads (0: all). Throws what FlowSurface throws.
+/// On `threads` threads (0: all).
 std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces,
                                             unsigned threads);
 

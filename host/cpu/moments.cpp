@@ -67,60 +67,75 @@ void gather(const plan::Moments& plan, const PartialLayout& layout, std::span<co
   });
 }
 
-} // namespace
+class CpuMoments final : public PreparedMoments {
+public:
+  CpuMoments(const MomentProblem& problem, unsigned threads) : problem_(problem), threads_(threads) {}
 
-Multipoles moments(const MomentProblem& problem, unsigned threads, Monitor& monitor, RunReport* report) {
-  const auto start = Clock::now();
-  if (threads == 0) threads = all_threads();
-  const plan::Moments plan = plan::moments(problem, moments_lanes());
-  const double setup = seconds_since(start);
-
-  const PartialLayout layout(plan.lmax);
-  const auto hand = deal(plan, partials(layout));
-  // Where partial sums are large, hands are played in rounds, one to a thread, so that few of them exist at once.
-  const std::size_t seats = round_size(layout, threads, hand.size());
-  std::vector<Partial> partial;
-  for (std::size_t seat = 0; seat < seats; ++seat) {
-    partial.push_back(hwy::AllocateAligned<double>(std::max<std::size_t>(layout.size(), 1))); // lmax 0 has none
-    if (!partial.back()) throw std::bad_alloc();
+  // 304 bytes a face and 8 a vertex for the plan; the partial sums that exist at once; rows and phases of a thread; sums and
+  // result.
+  MemoryNeed memory() const override {
+    const PartialLayout layout(problem_.lmax);
+    return {plan::bytes(problem_) + round_size(layout, threads_, partials(layout)) * 8 * layout.size() +
+                threads_ * MomentsWorkspace::bytes(problem_.lmax) + 32 * Multipoles::count(problem_.lmax),
+            0};
   }
-  std::vector<MomentsWorkspace> workspaces;
-  for (unsigned t = 0; t < threads; ++t) workspaces.emplace_back(plan.lmax);
-  std::vector<double> sums(2 * Multipoles::count(plan.lmax), 0.0);
-  sums[0] = std::ldexp(plan.sum_of_dets, plan.start_exponent);
-  double done = 0;
-  std::mutex done_mutex;
-  for (std::size_t first = 0; first < hand.size(); first += seats) {
-    const std::size_t round = std::min(seats, hand.size() - first);
-    parallel_for(threads, round, [&](std::size_t seat, unsigned thread) {
-      const FlushDenormals flush;
-      if (first == 0) std::fill_n(partial[seat].get(), layout.size(), 0.0);
-      double work = 0;
-      for (const std::uint32_t group : hand[first + seat]) {
-        check_stop(monitor);
-        accumulate_group(plan, group, layout, workspaces[thread], partial[seat].get());
-        const double l = plan.last_degree[group];
-        work += 0.5 * plan.lanes * (l + 1) * (l + 2);
-        if (work < plan.elements / 4096) continue;
+
+  Multipoles run(Monitor& monitor, RunReport* report) const override {
+    const auto start = Clock::now();
+    const plan::Moments plan = plan::moments(problem_, moments_lanes());
+    const double setup = seconds_since(start);
+
+    const PartialLayout layout(plan.lmax);
+    const auto hand = deal(plan, partials(layout));
+    // Where partial sums are large, hands are played in rounds, one to a thread, so that few of them exist at once.
+    const std::size_t seats = round_size(layout, threads_, hand.size());
+    std::vector<Partial> partial;
+    for (std::size_t seat = 0; seat < seats; ++seat) {
+      partial.push_back(hwy::AllocateAligned<double>(std::max<std::size_t>(layout.size(), 1))); // lmax 0 has none
+      if (!partial.back()) throw std::bad_alloc();
+    }
+    std::vector<MomentsWorkspace> workspaces;
+    for (unsigned t = 0; t < threads_; ++t) workspaces.emplace_back(plan.lmax);
+    std::vector<double> sums(2 * Multipoles::count(plan.lmax), 0.0);
+    sums[0] = std::ldexp(plan.sum_of_dets, plan.start_exponent);
+    double done = 0;
+    std::mutex done_mutex;
+    for (std::size_t first = 0; first < hand.size(); first += seats) {
+      const std::size_t round = std::min(seats, hand.size() - first);
+      parallel_for(threads_, round, [&](std::size_t seat, unsigned thread) {
+        const FlushDenormals flush;
+        if (first == 0) std::fill_n(partial[seat].get(), layout.size(), 0.0);
+        double work = 0;
+        for (const std::uint32_t group : hand[first + seat]) {
+          check_stop(monitor);
+          accumulate_group(plan, group, layout, workspaces[thread], partial[seat].get());
+          const double l = plan.last_degree[group];
+          work += 0.5 * plan.lanes * (l + 1) * (l + 2);
+          if (work < plan.elements / 4096) continue;
+          const std::lock_guard lock(done_mutex);
+          done += work;
+          work = 0;
+          monitor.progress("moments", std::min(1.0, done / plan.elements));
+        }
         const std::lock_guard lock(done_mutex);
         done += work;
-        work = 0;
-        monitor.progress("moments", std::min(1.0, done / plan.elements));
-      }
-      const std::lock_guard lock(done_mutex);
-      done += work;
-    });
-    gather(plan, layout, {partial.data(), round}, threads, sums);
+      });
+      gather(plan, layout, {partial.data(), round}, threads_, sums);
+    }
+    Multipoles result = plan::finish(problem_, plan, sums);
+    if (report) *report = plan::report(plan, setup, seconds_since(start));
+    return result;
   }
-  Multipoles result = plan::finish(problem, plan, sums);
-  if (report) *report = plan::report(plan, setup, seconds_since(start));
-  return result;
-}
 
-std::uint64_t moments_bytes(const MomentProblem& problem, unsigned threads) {
-  const PartialLayout layout(problem.lmax);
-  return plan::bytes(problem) + round_size(layout, threads, partials(layout)) * 8 * layout.size() +
-         640 * std::uint64_t(threads) * (std::uint64_t(problem.lmax) + 48) + 32 * Multipoles::count(problem.lmax);
+private:
+  MomentProblem problem_;
+  unsigned threads_;
+};
+
+} // namespace
+
+std::unique_ptr<PreparedMoments> moments(const MomentProblem& problem, unsigned threads) {
+  return std::make_unique<CpuMoments>(problem, threads ? threads : all_threads());
 }
 
 } // namespace cowgpu::cpu

@@ -214,6 +214,15 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace cowgpu::cpu {
+namespace {
+
+constexpr std::size_t widest = 8; // doubles in the widest vector
+
+std::size_t columns(int lmax) {
+  return std::size_t(lmax) + 10 * degrees_per_sweep;
+}
+
+} // namespace
 
 HWY_EXPORT(AccumulateGroup);
 HWY_EXPORT(MomentsLanes);
@@ -226,11 +235,13 @@ PartialLayout::PartialLayout(int lmax) : offset{0} {
 }
 
 MomentsWorkspace::MomentsWorkspace(int lmax) {
-  constexpr std::size_t widest = 8;
-  const std::size_t columns = std::size_t(lmax) + 10 * degrees_per_sweep;
-  rows = hwy::AllocateAligned<double>(columns * 6 * widest);
-  phases = hwy::AllocateAligned<double>(columns * 4 * widest);
+  rows = hwy::AllocateAligned<double>(columns(lmax) * 6 * widest);
+  phases = hwy::AllocateAligned<double>(columns(lmax) * 4 * widest);
   if (!rows || !phases) throw std::bad_alloc();
+}
+
+std::size_t MomentsWorkspace::bytes(int lmax) {
+  return columns(lmax) * 10 * widest * sizeof(double);
 }
 
 int moments_lanes() {

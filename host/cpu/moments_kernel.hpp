@@ -29,6 +29,7 @@ struct PartialLayout {
 /// Rows and phases of one group; reused from group to group.
 struct MomentsWorkspace {
   explicit MomentsWorkspace(int lmax);
+  static std::size_t bytes(int lmax);
   hwy::AlignedFreeUniquePtr<double[]> rows;   ///< 6 vectors a column
   hwy::AlignedFreeUniquePtr<double[]> phases; ///< 4 vectors a column
 };

@@ -1,16 +1,15 @@
 // The CPU path of the verb `potential`: vectors of points run the recursion and sum all sets at once.
 #pragma once
 
-#include "host/monitor.hpp"
 #include "host/plan/potential.hpp"
 #include "host/potential.hpp"
-#include "host/run_report.hpp"
+
+#include <memory>
 
 namespace cowgpu::cpu {
 
-PotentialField potential(const PotentialProblem& problem, unsigned threads, Monitor& monitor, RunReport* report);
-
-std::uint64_t potential_bytes(std::uint64_t points, int lmax, Derivatives derivatives);
+/// On `threads` threads (0: all).
+std::unique_ptr<ExteriorPotential> exterior_potential(const PotentialProblem& problem, unsigned threads);
 
 /// Points that sum_potential() takes at once.
 inline constexpr std::size_t potential_group = 8;

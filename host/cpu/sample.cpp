@@ -122,53 +122,67 @@ private:
   std::span<std::array<double, 3>> weights_;
 };
 
+class CpuSampler final : public SphereSampler {
+public:
+  CpuSampler(const SphereGrid& grid, unsigned threads) : grid_(grid), threads_(threads) {}
+
+  MemoryNeed memory(std::uint64_t faces) const override {
+    const std::uint64_t bands = std::uint64_t(grid_.rings) / rings_per_band + 1;
+    const std::uint64_t ring = std::uint64_t(grid_.ring_length);
+    // The result; a band a thread, of which there are never more than bands; faces twice while they are sorted, and once
+    // in every band at worst.
+    return {grid_.points() * (28 + 1) + (8 + 16) * ring + bands * 8 * ring + 32 * std::uint64_t(grid_.rings) +
+                faces * (2 * sizeof(plan::SampleFace) + 1 + 8 * bands),
+            0};
+  }
+
+  SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, Monitor& monitor,
+                       RunReport* report) const override {
+    const auto start = Clock::now();
+    const plan::Sample plan(positions, faces, grid_, threads_);
+    const auto bands = plan.bands(rings_per_band);
+    SphereSamples result = plan.samples();
+    const double setup = seconds_since(start);
+
+    std::vector<std::uint8_t> hit(plan.kept.size(), 0);
+    std::size_t first_uncovered = grid_.points(), done = 0;
+    std::uint64_t uncovered = 0;
+    std::mutex mutex;
+    parallel_for(threads_, bands.size(), [&](std::size_t task, unsigned thread) {
+      check_stop(monitor);
+      const int begin = int(task) * rings_per_band;
+      Band band(plan, begin, std::min(grid_.rings, begin + rings_per_band), result);
+      for (const std::uint32_t rank : bands[task]) band.scan(rank);
+      band.finish(hit);
+      const std::lock_guard lock(mutex);
+      result.folded_points += band.folded;
+      result.edge_points += band.edges;
+      result.flipped_points += band.flipped;
+      result.exact_decisions += band.exact;
+      uncovered += band.uncovered;
+      first_uncovered = std::min(first_uncovered, band.first_uncovered);
+      ++done;
+      if (thread == 0) monitor.progress("sample", double(done) / double(bands.size()));
+    });
+    if (uncovered > 0) plan.refuse(first_uncovered, uncovered);
+    result.faces_hit = std::uint64_t(std::count(hit.begin(), hit.end(), 1));
+    if (report) {
+      *report = {};
+      report->setup_seconds = setup;
+      report->seconds = seconds_since(start);
+    }
+    return result;
+  }
+
+private:
+  SphereGrid grid_;
+  unsigned threads_;
+};
+
 } // namespace
 
-SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
-                     unsigned threads, Monitor& monitor, RunReport* report) {
-  const auto start = Clock::now();
-  const plan::Sample plan(positions, faces, grid, threads);
-  const auto bands = plan.bands(rings_per_band);
-  SphereSamples result = plan.samples();
-  const double setup = seconds_since(start);
-
-  std::vector<std::uint8_t> hit(plan.kept.size(), 0);
-  std::size_t first_uncovered = grid.points(), done = 0;
-  std::uint64_t uncovered = 0;
-  std::mutex mutex;
-  parallel_for(threads, bands.size(), [&](std::size_t task, unsigned thread) {
-    check_stop(monitor);
-    const int begin = int(task) * rings_per_band;
-    Band band(plan, begin, std::min(grid.rings, begin + rings_per_band), result);
-    for (const std::uint32_t rank : bands[task]) band.scan(rank);
-    band.finish(hit);
-    const std::lock_guard lock(mutex);
-    result.folded_points += band.folded;
-    result.edge_points += band.edges;
-    result.flipped_points += band.flipped;
-    result.exact_decisions += band.exact;
-    uncovered += band.uncovered;
-    first_uncovered = std::min(first_uncovered, band.first_uncovered);
-    ++done;
-    if (thread == 0) monitor.progress("sample", double(done) / double(bands.size()));
-  });
-  if (uncovered > 0) plan.refuse(first_uncovered, uncovered);
-  result.faces_hit = std::uint64_t(std::count(hit.begin(), hit.end(), 1));
-  if (report) {
-    *report = {};
-    report->setup_seconds = setup;
-    report->seconds = seconds_since(start);
-  }
-  return result;
-}
-
-std::uint64_t sample_bytes(std::uint64_t faces, const SphereGrid& grid) {
-  const std::uint64_t bands = std::uint64_t(grid.rings) / rings_per_band + 1;
-  const std::uint64_t ring = std::uint64_t(grid.ring_length);
-  // The result; a band a thread, of which there are never more than bands; faces twice while they are sorted, and once
-  // in every band at worst.
-  return grid.points() * (28 + 1) + (8 + 16) * ring + bands * 8 * ring + 32 * std::uint64_t(grid.rings) +
-         faces * (2 * sizeof(plan::SampleFace) + 1 + 8 * bands);
+std::unique_ptr<SphereSampler> sphere_sampler(const SphereGrid& grid, unsigned threads) {
+  return std::make_unique<CpuSampler>(grid, threads);
 }
 
 } // namespace cowgpu::cpu

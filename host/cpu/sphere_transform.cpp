@@ -43,16 +43,57 @@ void prefer_large_pages(double* begin, std::size_t doubles) {
 class Transform final : public SphereTransform {
 public:
   Transform(const SphereGrid& from, int degree, unsigned threads)
-      : SphereTransform(from, degree), plan_(plan::legendre(grid(), degree, threads)),
-        seeds_(plan::seeds(plan_, seed_orders, seed_segment, threads)), fourier_(grid().ring_length), pool_(threads),
-        steps_(plan::active_steps(plan_, seeds_)) {
-    for (unsigned t = 0; t < pool_.threads(); ++t) {
-      legendre_work_.emplace_back(plan_);
-      ring_work_.emplace_back(fourier_);
-    }
+      : SphereTransform(from, degree), threads_(threads ? threads : all_threads()) {}
+
+  MemoryNeed memory(int fields) const override {
+    const std::size_t orders = std::size_t(lmax()) + 1, rings = std::size_t(grid().rings);
+    const std::size_t length = std::size_t(grid().ring_length);
+    plan::Legendre shape; // as far as sizes depend on it
+    shape.lmax = lmax();
+    shape.blocks = (grid().rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs;
+    const std::size_t pairs = std::size_t(shape.blocks) * plan::block_pairs;
+    std::size_t steps = 0;
+    for (int m = 0; m <= lmax(); ++m) steps += std::size_t(shape.padded_steps(m));
+
+    const std::size_t of_grid = rings * (2 * sizeof(long double) + 2 * sizeof(double));
+    const std::size_t of_plan = pairs * (2 * sizeof(int) + 3 * sizeof(double) + sizeof(long double)) +
+                                (4 * steps + 2 * steps + 2 * orders) * sizeof(double) + 2 * (orders + 1) * 8;
+    const std::size_t of_seeds = orders * pairs * 2 * sizeof(double) + orders * std::size_t(shape.blocks) * 4;
+    const std::size_t of_planning = threads_ * pairs * 2 * sizeof(long double);
+    const std::size_t of_fourier = length * 3 * 2 * sizeof(double);
+    const std::size_t a_thread = LegendreWork::bytes(shape) + RingWork::most_bytes(grid().ring_length);
+    const std::size_t between = SpectrumLayout(shape, std::min(fields, most_fields_together)).size() * sizeof(double);
+    constexpr std::size_t others = std::size_t(2) << 20; // a large page, small objects, alignment
+    const std::size_t turned = grid().shift == 0 ? 0 : 16 * std::size_t(fields) * SphereCoefficients::count(lmax());
+    return {of_grid + of_plan + of_seeds + of_planning + of_fourier + threads_ * a_thread + between + turned + others,
+            0};
+  }
+
+  void prepare() override {
+    if (!tables_) tables_ = std::make_unique<Tables>(grid(), lmax(), threads_);
   }
 
 private:
+  struct Tables {
+    Tables(const SphereGrid& grid, int lmax, unsigned threads)
+        : legendre(plan::legendre(grid, lmax, threads)),
+          seeds(plan::seeds(legendre, seed_orders, seed_segment, threads)), fourier(grid.ring_length), pool(threads),
+          steps(plan::active_steps(legendre, seeds)) {
+      for (unsigned t = 0; t < pool.threads(); ++t) {
+        legendre_work.emplace_back(legendre);
+        ring_work.emplace_back(fourier);
+      }
+    }
+
+    plan::Legendre legendre;
+    plan::Seeds seeds;
+    RingFourier fourier;
+    ThreadPool pool;
+    double steps;
+    std::vector<LegendreWork> legendre_work;
+    std::vector<RingWork> ring_work;
+  };
+
   void to_grid(int fields, std::span<const std::complex<double>> coefficients, std::span<double> values,
                RingFactor factor, Monitor& monitor, TransformReport& report) override {
     const std::size_t count = SphereCoefficients::count(lmax()), points = grid().points();
@@ -61,28 +102,28 @@ private:
       const SpectrumLayout layout = provide(group.count);
       const auto first = std::size_t(group.first);
       auto start = Clock::now();
-      pool_.run(std::size_t(layout.orders), [&](std::size_t m, unsigned thread) {
+      tables_->pool.run(std::size_t(layout.orders), [&](std::size_t m, unsigned thread) {
         progress.task(thread, group, 0, m, std::size_t(layout.orders));
         const std::size_t at = first * count + SphereCoefficients::index(lmax(), int(m), int(m));
-        legendre_synthesis(plan_, seeds_, int(m), group.count, &coefficients[at], count, legendre_work_[thread],
-                           &spectrum_[m * layout.row]);
+        legendre_synthesis(tables_->legendre, tables_->seeds, int(m), group.count, &coefficients[at], count,
+                           tables_->legendre_work[thread], &spectrum_[m * layout.row]);
       });
       report.legendre_seconds += seconds_since(start);
       start = Clock::now();
       const std::size_t tasks = std::size_t(layout.blocks) * std::size_t(group.count);
-      pool_.run(tasks, [&](std::size_t task, unsigned thread) {
+      tables_->pool.run(tasks, [&](std::size_t task, unsigned thread) {
         progress.task(thread, group, 1, task, tasks);
         const int block = int(task) / group.count, field = int(task) % group.count;
         double* map = values.data() + (first + std::size_t(field)) * points;
         RingTargets rings;
         for (std::size_t i = 0; i < plan::block_pairs; ++i) {
           const std::size_t pair = std::size_t(block) * plan::block_pairs + i;
-          rings.north[i] = ring(map, plan_.north[pair]);
-          rings.south[i] = ring(map, plan_.south[pair]);
-          rings.weight[i] = factor == RingFactor::weight ? plan_.weight[pair] : 1;
+          rings.north[i] = ring(map, tables_->legendre.north[pair]);
+          rings.south[i] = ring(map, tables_->legendre.south[pair]);
+          rings.weight[i] = factor == RingFactor::weight ? tables_->legendre.weight[pair] : 1;
         }
-        orders_to_rings(fourier_, rings, lmax(), &spectrum_[layout.at(0, field, block)], layout.row,
-                        ring_work_[thread]);
+        orders_to_rings(tables_->fourier, rings, lmax(), &spectrum_[layout.at(0, field, block)], layout.row,
+                        tables_->ring_work[thread]);
       });
       report.fourier_seconds += seconds_since(start);
     }
@@ -99,28 +140,28 @@ private:
       const auto first = std::size_t(group.first);
       auto start = Clock::now();
       const std::size_t tasks = std::size_t(layout.blocks) * std::size_t(group.count);
-      pool_.run(tasks, [&](std::size_t task, unsigned thread) {
+      tables_->pool.run(tasks, [&](std::size_t task, unsigned thread) {
         progress.task(thread, group, 0, task, tasks);
         const int block = int(task) / group.count, field = int(task) % group.count;
         const double* map = values.data() + (first + std::size_t(field)) * points;
         RingBlock rings;
         for (std::size_t i = 0; i < plan::block_pairs; ++i) {
           const std::size_t pair = std::size_t(block) * plan::block_pairs + i;
-          rings.north[i] = ring(map, plan_.north[pair]);
-          rings.south[i] = ring(map, plan_.south[pair]);
-          rings.weight[i] = factor == RingFactor::weight ? plan_.weight[pair] : 1;
-          rings.x[i] = plan_.x[pair];
+          rings.north[i] = ring(map, tables_->legendre.north[pair]);
+          rings.south[i] = ring(map, tables_->legendre.south[pair]);
+          rings.weight[i] = factor == RingFactor::weight ? tables_->legendre.weight[pair] : 1;
+          rings.x[i] = tables_->legendre.x[pair];
         }
-        rings_to_orders(fourier_, rings, lmax(), &spectrum_[layout.at(0, field, block)], layout.row,
-                        ring_work_[thread]);
+        rings_to_orders(tables_->fourier, rings, lmax(), &spectrum_[layout.at(0, field, block)], layout.row,
+                        tables_->ring_work[thread]);
       });
       report.fourier_seconds += seconds_since(start);
       start = Clock::now();
-      pool_.run(std::size_t(layout.orders), [&](std::size_t m, unsigned thread) {
+      tables_->pool.run(std::size_t(layout.orders), [&](std::size_t m, unsigned thread) {
         progress.task(thread, group, 1, m, std::size_t(layout.orders));
         const std::size_t at = first * count + SphereCoefficients::index(lmax(), int(m), int(m));
-        legendre_analysis(plan_, seeds_, int(m), group.count, &spectrum_[m * layout.row], legendre_work_[thread],
-                          &coefficients[at], count);
+        legendre_analysis(tables_->legendre, tables_->seeds, int(m), group.count, &spectrum_[m * layout.row],
+                          tables_->legendre_work[thread], &coefficients[at], count);
       });
       report.legendre_seconds += seconds_since(start);
     }
@@ -156,7 +197,7 @@ private:
 
   // Room between the stages for so many fields; kept for the calls to come.
   SpectrumLayout provide(int fields) {
-    const SpectrumLayout layout(plan_, fields);
+    const SpectrumLayout layout(tables_->legendre, fields);
     if (layout.size() > spectrum_size_) {
       spectrum_.reset();
       spectrum_size_ = 0;
@@ -169,18 +210,14 @@ private:
   }
 
   void count_flops(int fields, TransformReport& report) const {
-    for (const FieldGroup& group : groups_of(fields)) report.legendre_flops += steps_ * 2 * (2 + 4 * group.count);
+    for (const FieldGroup& group : groups_of(fields))
+      report.legendre_flops += tables_->steps * 2 * (2 + 4 * group.count);
     const double n = grid().ring_length;
-    report.fourier_flops += 5 * n * std::log2(n) * plan_.pairs * fields;
+    report.fourier_flops += 5 * n * std::log2(n) * tables_->legendre.pairs * fields;
   }
 
-  plan::Legendre plan_;
-  plan::Seeds seeds_;
-  RingFourier fourier_;
-  ThreadPool pool_;
-  double steps_;
-  std::vector<LegendreWork> legendre_work_;
-  std::vector<RingWork> ring_work_;
+  unsigned threads_;
+  std::unique_ptr<Tables> tables_;
   hwy::AlignedFreeUniquePtr<double[]> spectrum_;
   std::size_t spectrum_size_ = 0;
 };
@@ -189,30 +226,6 @@ private:
 
 std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax, unsigned threads) {
   return std::make_unique<Transform>(grid, lmax, threads);
-}
-
-MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields, unsigned threads) {
-  if (threads == 0) threads = all_threads();
-  const std::size_t orders = std::size_t(lmax) + 1, rings = std::size_t(grid.rings);
-  const std::size_t length = std::size_t(grid.ring_length);
-  plan::Legendre shape; // as far as sizes depend on it
-  shape.lmax = lmax;
-  shape.blocks = (grid.rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs;
-  const std::size_t pairs = std::size_t(shape.blocks) * plan::block_pairs;
-  std::size_t steps = 0;
-  for (int m = 0; m <= lmax; ++m) steps += std::size_t(shape.padded_steps(m));
-
-  const std::size_t of_grid = rings * (2 * sizeof(long double) + 2 * sizeof(double));
-  const std::size_t of_plan = pairs * (2 * sizeof(int) + 3 * sizeof(double) + sizeof(long double)) +
-                              (4 * steps + 2 * steps + 2 * orders) * sizeof(double) + 2 * (orders + 1) * 8;
-  const std::size_t of_seeds = orders * pairs * 2 * sizeof(double) + orders * std::size_t(shape.blocks) * 4;
-  const std::size_t of_planning = threads * pairs * 2 * sizeof(long double);
-  const std::size_t of_fourier = length * 3 * 2 * sizeof(double);
-  const std::size_t a_thread = LegendreWork::bytes(shape) + RingWork::most_bytes(grid.ring_length);
-  const std::size_t between = SpectrumLayout(shape, std::min(fields, most_fields_together)).size() * sizeof(double);
-  constexpr std::size_t others = std::size_t(2) << 20; // a large page, small objects, alignment
-  const std::size_t turned = grid.shift == 0 ? 0 : 16 * std::size_t(fields) * SphereCoefficients::count(lmax);
-  return {of_grid + of_plan + of_seeds + of_planning + of_fourier + threads * a_thread + between + turned + others, 0};
 }
 
 } // namespace cowgpu::cpu

@@ -63,7 +63,7 @@ Colour reflectance(const plot::Ink& ink) {
 plot::Canvas components_figure(const RawMesh& mesh, const SphereMap& map, const Vec3& origin, const View& view,
                                const std::string& title, Backend& backend, Monitor& monitor, const std::string& unit) {
   const SphereGrid grid = make_grid(GridKind::clenshaw_curtis, map_degree);
-  const SphereSamples samples = backend.sample(map.positions, mesh.faces, grid, monitor);
+  const SphereSamples samples = backend.sphere_sampler(grid)->sample(map.positions, mesh.faces, monitor);
   std::vector<double> fields =
       surface_fields(sample_positions(samples, mesh.faces, mesh.vertices), grid, origin, false);
   std::array<double, 3> means{};

@@ -42,7 +42,7 @@ plot::Canvas orders_figure(const SurfaceExpansion& expansion, SurfaceFields fiel
 /// body and, below it, on the sphere in Mollweide's projection (the middle is phi = 0, theta = 0 is up). The means of the
 /// two angles are removed, and of f_dphi the absolute value is shown, as in the paper's tables. A scale ends where half a hundredth of the
 /// sphere, and of the vertices, is left beyond it, in its last colour. PNG. `origin` as in
-/// SurfaceExpansion. Throws what Backend::sample and Backend::render throw.
+/// SurfaceExpansion. Throws what SphereSampler::sample and Backend::render throw.
 plot::Canvas components_figure(const RawMesh& mesh, const SphereMap& map, const Vec3& origin, const View& view,
                                const std::string& title, Backend& backend, Monitor& monitor,
                                const std::string& unit = mesh_unit);

@@ -41,54 +41,30 @@ public:
 
   const DeviceFacts& facts() const override { return facts_; }
 
-  Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
-    return gpu::watched(*gpu_, monitor, [&] { return gpu::moments(*gpu_, shape_, problem, monitor, report); });
+  std::unique_ptr<PreparedMoments> moments(const MomentProblem& problem) const override {
+    return gpu::moments(gpu_, shape_, problem);
   }
 
-  MemoryNeed moments_memory(const MomentProblem& problem) const override {
-    return gpu::moments_memory(gpu_->facts(), shape_, problem);
+  std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) const override {
+    return gpu::sphere_transform(gpu_, transform_shape_, grid, lmax);
   }
 
-  std::unique_ptr<SphereTransform> sphere_transform(const SphereGrid& grid, int lmax) override {
-    return gpu::translated([&] { return gpu::sphere_transform(gpu_, transform_shape_, grid, lmax); });
+  std::unique_ptr<SphereSampler> sphere_sampler(const SphereGrid& grid) const override {
+    return gpu::sphere_sampler(gpu_, grid);
   }
 
-  MemoryNeed sphere_transform_memory(const SphereGrid& grid, int lmax, int fields) const override {
-    return gpu::sphere_transform_memory(gpu_->facts(), transform_shape_, grid, lmax, fields);
+  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices,
+                                                std::span<const Face> faces) const override {
+    return gpu::distance_field(gpu_, iteration_budget_, vertices, faces);
   }
 
-  SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, const SphereGrid& grid,
-                       Monitor& monitor, RunReport* report) override {
-    return gpu::watched(*gpu_, monitor, [&] { return gpu::sample(*gpu_, positions, faces, grid, monitor, report); });
+  std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices,
+                                              std::span<const Face> faces) const override {
+    return gpu::distance_flow(gpu_, iteration_budget_, vertices, faces);
   }
 
-  MemoryNeed sample_memory(std::uint64_t faces, const SphereGrid& grid) const override {
-    return gpu::sample_memory(gpu_->facts(), faces, grid);
-  }
-
-  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces) override {
-    return gpu::translated([&] { return gpu::distance_field(gpu_, iteration_budget_, vertices, faces); });
-  }
-
-  MemoryNeed distance_field_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t queries) const override {
-    return gpu::distance_field_memory(vertices, faces, queries);
-  }
-
-  std::unique_ptr<DistanceFlow> distance_flow(std::span<const Vec3> vertices, std::span<const Face> faces) override {
-    return gpu::translated([&] { return gpu::distance_flow(gpu_, iteration_budget_, vertices, faces); });
-  }
-
-  MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) const override {
-    return gpu::distance_flow_memory(vertices, faces, starts);
-  }
-
-  PotentialField potential(const PotentialProblem& problem, Monitor& monitor, RunReport* report) override {
-    return gpu::watched(*gpu_, monitor,
-                        [&] { return gpu::potential(*gpu_, iteration_budget_, problem, monitor, report); });
-  }
-
-  MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives) const override {
-    return gpu::potential_memory(points, lmax, derivatives);
+  std::unique_ptr<ExteriorPotential> exterior_potential(const PotentialProblem& problem) const override {
+    return gpu::exterior_potential(gpu_, iteration_budget_, problem);
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {

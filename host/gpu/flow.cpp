@@ -254,34 +254,63 @@ private:
   std::size_t passes_ = 0; // since the last start
 };
 
+// A surface on the device.
+struct GpuSurface {
+  GpuSurface(std::shared_ptr<engine::Gpu> gpu, std::uint32_t iteration_budget, std::span<const Vec3> vertices,
+             std::span<const Face> triangles)
+      : surface(vertices, triangles), faces(std::move(gpu), iteration_budget, surface.tree()) {
+    std::vector<double> frames;
+    frames.reserve(22 * surface.faces());
+    for (std::uint32_t f = 0; f < surface.faces(); ++f) {
+      const plan::TriangleFrame<double>& t = surface.frame(f);
+      for (const double* v : {t.a, t.u, t.v, t.n}) frames.insert(frames.end(), v, v + 3);
+      for (const double x : {t.length, t.cx, t.cy, t.c_inverse, t.ex, t.ey, t.e_inverse}) frames.push_back(x);
+      for (int c = 0; c < 3; ++c) frames.push_back(surface.normal(f)[c]);
+    }
+    std::vector<std::uint32_t> face_of;
+    for (const std::uint32_t slot : faces.slots()) face_of.push_back(surface.tree().face_of_slot[slot]);
+    device =
+        std::make_unique<engine::Flow>(faces.device().device(), engine::FlowInput{frames, face_of, iteration_budget});
+  }
+
+  plan::FlowSurface surface;
+  ClosestFaces faces;
+  std::unique_ptr<engine::Flow> device;
+};
+
 class GpuFlow final : public DistanceFlow {
 public:
   GpuFlow(std::shared_ptr<engine::Gpu> gpu, std::uint32_t iteration_budget, std::span<const Vec3> vertices,
           std::span<const Face> faces)
-      : surface_(vertices, faces), faces_(std::move(gpu), iteration_budget, surface_.tree()) {
-    std::vector<double> frames;
-    frames.reserve(22 * faces.size());
-    for (std::uint32_t f = 0; f < faces.size(); ++f) {
-      const plan::TriangleFrame<double>& t = surface_.frame(f);
-      for (const double* v : {t.a, t.u, t.v, t.n}) frames.insert(frames.end(), v, v + 3);
-      for (const double x : {t.length, t.cx, t.cy, t.c_inverse, t.ex, t.ey, t.e_inverse}) frames.push_back(x);
-      for (int c = 0; c < 3; ++c) frames.push_back(surface_.normal(f)[c]);
-    }
-    std::vector<std::uint32_t> face_of;
-    for (const std::uint32_t slot : faces_.slots()) face_of.push_back(surface_.tree().face_of_slot[slot]);
-    device_ =
-        std::make_unique<engine::Flow>(faces_.device().device(), engine::FlowInput{frames, face_of, iteration_budget});
+      : gpu_(std::move(gpu)), iteration_budget_(iteration_budget), vertices_(vertices), faces_(faces) {}
+
+  MemoryNeed memory(std::uint64_t starts) const override {
+    const std::uint64_t live = std::min<std::uint64_t>(starts, most_live);
+    MemoryNeed need;
+    need.device = ClosestFaces::device_bytes(faces_.size(), live) + engine::Flow::surface_bytes(faces_.size()) +
+                  engine::Flow::batch_bytes(live);
+    // The device's tree is built beside a tree of boxes, and both are given up.
+    need.host = plan::distance_flow_bytes(vertices_.size(), faces_.size(), starts) + 360 * faces_.size() + need.device +
+                live * (sizeof(plan::FlowRun) + sizeof(Vec3) + 48);
+    return need;
+  }
+
+  void prepare() override {
+    if (!on_device_)
+      on_device_ = translated([&] { return std::make_unique<GpuSurface>(gpu_, iteration_budget_, vertices_, faces_); });
   }
 
   FlowPoints flow(std::span<const Vec3> starts, std::span<const Vec3> normals, const FlowOptions& options,
                   Monitor& monitor, FlowReport* report) override {
-    plan::FlowCall call(surface_, starts, normals, options, 0);
-    const engine::StopScope stop(faces_.device(), [&monitor] { return monitor.stopped(); });
-    faces_.device().take_profile();
+    prepare();
+    const plan::FlowSurface& surface = on_device_->surface;
+    plan::FlowCall call(surface, starts, normals, options, 0);
+    const engine::StopScope stop(*gpu_, [&monitor] { return monitor.stopped(); });
+    gpu_->take_profile();
     engine::FlowNumbers numbers;
     numbers.time = options.time;
     numbers.time_reached = options.time * (1 - plan::FlowPath::time_digits);
-    numbers.scale = surface_.diagonal();
+    numbers.scale = surface.diagonal();
     const double tolerances[] = {options.tolerance, plan::FlowRun::tighter(options.tolerance)};
     for (int way = 0; way < 2; ++way) {
       numbers.tolerance[way] = tolerances[way];
@@ -289,22 +318,23 @@ public:
       numbers.rounds[way] = plan::FlowPath::most_steps(tolerances[way]);
     }
     FlowReport passes;
-    Wavefront(call, surface_, faces_, *device_, numbers).run(monitor, passes);
+    Wavefront(call, surface, on_device_->faces, *on_device_->device, numbers).run(monitor, passes);
     FlowPoints points = call.finish(report);
     if (report) {
       report->passes = passes.passes;
       report->device_queries = passes.device_queries;
       report->device_moves = passes.device_moves;
-      for (const auto& k : faces_.device().take_profile())
-        report->kernels.push_back({k.kernel, k.dispatches, k.seconds});
+      for (const auto& k : gpu_->take_profile()) report->kernels.push_back({k.kernel, k.dispatches, k.seconds});
     }
     return points;
   }
 
 private:
-  plan::FlowSurface surface_;
-  ClosestFaces faces_;
-  std::unique_ptr<engine::Flow> device_;
+  std::shared_ptr<engine::Gpu> gpu_;
+  std::uint32_t iteration_budget_;
+  std::span<const Vec3> vertices_;
+  std::span<const Face> faces_;
+  std::unique_ptr<GpuSurface> on_device_;
 };
 
 } // namespace
@@ -312,17 +342,6 @@ private:
 std::unique_ptr<DistanceFlow> distance_flow(std::shared_ptr<engine::Gpu> gpu, std::uint32_t iteration_budget,
                                             std::span<const Vec3> vertices, std::span<const Face> faces) {
   return std::make_unique<GpuFlow>(std::move(gpu), iteration_budget, vertices, faces);
-}
-
-MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts) {
-  const std::uint64_t live = std::min<std::uint64_t>(starts, most_live);
-  MemoryNeed need;
-  need.device =
-      ClosestFaces::device_bytes(faces, live) + engine::Flow::surface_bytes(faces) + engine::Flow::batch_bytes(live);
-  // The device's tree is built beside a tree of boxes, and both are given up.
-  need.host = plan::distance_flow_bytes(vertices, faces, starts) + 360 * faces + need.device +
-              live * (sizeof(plan::FlowRun) + sizeof(Vec3) + 48);
-  return need;
 }
 
 } // namespace cowgpu::gpu

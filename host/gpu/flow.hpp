@@ -13,10 +13,8 @@
 
 namespace cowgpu::gpu {
 
-/// Keeps the device open. `iteration_budget`: GpuOptions::iteration_budget. Throws engine::Error beside Error.
+/// Keeps the device open. `iteration_budget`: GpuOptions::iteration_budget.
 std::unique_ptr<DistanceFlow> distance_flow(std::shared_ptr<engine::Gpu> gpu, std::uint32_t iteration_budget,
                                             std::span<const Vec3> vertices, std::span<const Face> faces);
-
-MemoryNeed distance_flow_memory(std::uint64_t vertices, std::uint64_t faces, std::uint64_t starts);
 
 } // namespace cowgpu::gpu

@@ -4,12 +4,12 @@
 #include "engine/gpu.hpp"
 #include "host/backend.hpp"
 
+#include <memory>
+
 namespace cowgpu::gpu {
 
-/// Throws engine::Error beside Error. `iteration_budget`: GpuOptions::iteration_budget.
-PotentialField potential(engine::Gpu& gpu, std::uint32_t iteration_budget, const PotentialProblem& problem,
-                         Monitor& monitor, RunReport* report);
-
-MemoryNeed potential_memory(std::uint64_t points, int lmax, Derivatives derivatives);
+/// Keeps the device open. `iteration_budget`: GpuOptions::iteration_budget.
+std::unique_ptr<ExteriorPotential> exterior_potential(std::shared_ptr<engine::Gpu> gpu, std::uint32_t iteration_budget,
+                                                      const PotentialProblem& problem);
 
 } // namespace cowgpu::gpu

@@ -2,12 +2,14 @@
 
 #include "engine/kernels/sample.hpp"
 #include "host/clock.hpp"
+#include "host/gpu/errors.hpp"
 #include "host/parallel.hpp"
 #include "host/plan/sample.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <utility>
 
 namespace cowgpu::gpu {
 namespace {
@@ -147,56 +149,74 @@ private:
   engine::SampleOutput output_;
 };
 
+class GpuSampler final : public SphereSampler {
+public:
+  GpuSampler(std::shared_ptr<engine::Gpu> gpu, const SphereGrid& grid) : gpu_(std::move(gpu)), grid_(grid) {}
+
+  MemoryNeed memory(std::uint64_t faces) const override {
+    const int rings = std::min(grid_.rings, rings_per_band(grid_));
+    const std::uint64_t bands = std::uint64_t((grid_.rings + rings - 1) / rings);
+    const std::uint64_t points = std::uint64_t(rings) * std::uint64_t(grid_.ring_length);
+    // A span has a point; no point is expected to lie in the reach of more than four triangles.
+    const std::uint64_t spans = 4 * points + faces;
+    MemoryNeed need;
+    need.device = engine::sample_device_bytes(points, faces, spans);
+    need.host = grid_.points() * 28 + points * 32 + 3 * sizeof(engine::SampleSpan) * spans +
+                faces * (72 + 1 + 2 * sizeof(plan::SampleFace) + 8 * bands) + 32 * std::uint64_t(grid_.rings) +
+                32 * std::uint64_t(grid_.ring_length);
+    return need;
+  }
+
+  SphereSamples sample(std::span<const Vec3> positions, std::span<const Face> faces, Monitor& monitor,
+                       RunReport* report) const override {
+    return watched(*gpu_, monitor, [&] { return found(positions, faces, monitor, report); });
+  }
+
+private:
+  SphereSamples found(std::span<const Vec3> positions, std::span<const Face> faces, Monitor& monitor,
+                      RunReport* report) const {
+    const auto start = Clock::now();
+    const plan::Sample plan(positions, faces, grid_, 0);
+    const int rings = rings_per_band(grid_);
+    const auto bands = plan.bands(rings);
+    SphereSamples result = plan.samples();
+    double setup = seconds_since(start);
+
+    gpu_->take_profile();
+    std::vector<std::uint8_t> hit(plan.kept.size(), 0);
+    std::size_t lowest = grid_.points();
+    std::uint64_t uncovered = 0;
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+      check_stop(monitor);
+      const int begin = int(b) * rings;
+      Band band(plan, bands[b], begin, std::min(grid_.rings, begin + rings));
+      const auto before = Clock::now();
+      band.prepare();
+      setup += seconds_since(before);
+      band.run(gpu_->device());
+      band.decide(result);
+      uncovered += band.finish(result, hit, lowest);
+      monitor.progress("sample", double(b + 1) / double(bands.size()));
+    }
+    if (uncovered > 0) plan.refuse(lowest, uncovered);
+    result.faces_hit = std::uint64_t(std::count(hit.begin(), hit.end(), 1));
+    if (report) {
+      *report = {};
+      report->setup_seconds = setup;
+      report->seconds = seconds_since(start);
+      for (const auto& k : gpu_->take_profile()) report->kernels.push_back({k.kernel, k.dispatches, k.seconds});
+    }
+    return result;
+  }
+
+  std::shared_ptr<engine::Gpu> gpu_;
+  SphereGrid grid_;
+};
+
 } // namespace
 
-SphereSamples sample(engine::Gpu& gpu, std::span<const Vec3> positions, std::span<const Face> faces,
-                     const SphereGrid& grid, Monitor& monitor, RunReport* report) {
-  const auto start = Clock::now();
-  const plan::Sample plan(positions, faces, grid, 0);
-  const int rings = rings_per_band(grid);
-  const auto bands = plan.bands(rings);
-  SphereSamples result = plan.samples();
-  double setup = seconds_since(start);
-
-  gpu.take_profile();
-  std::vector<std::uint8_t> hit(plan.kept.size(), 0);
-  std::size_t lowest = grid.points();
-  std::uint64_t uncovered = 0;
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    check_stop(monitor);
-    const int begin = int(b) * rings;
-    Band band(plan, bands[b], begin, std::min(grid.rings, begin + rings));
-    const auto before = Clock::now();
-    band.prepare();
-    setup += seconds_since(before);
-    band.run(gpu.device());
-    band.decide(result);
-    uncovered += band.finish(result, hit, lowest);
-    monitor.progress("sample", double(b + 1) / double(bands.size()));
-  }
-  if (uncovered > 0) plan.refuse(lowest, uncovered);
-  result.faces_hit = std::uint64_t(std::count(hit.begin(), hit.end(), 1));
-  if (report) {
-    *report = {};
-    report->setup_seconds = setup;
-    report->seconds = seconds_since(start);
-    for (const auto& k : gpu.take_profile()) report->kernels.push_back({k.kernel, k.dispatches, k.seconds});
-  }
-  return result;
-}
-
-MemoryNeed sample_memory(const engine::GpuFacts&, std::uint64_t faces, const SphereGrid& grid) {
-  const int rings = std::min(grid.rings, rings_per_band(grid));
-  const std::uint64_t bands = std::uint64_t((grid.rings + rings - 1) / rings);
-  const std::uint64_t points = std::uint64_t(rings) * std::uint64_t(grid.ring_length);
-  // A span has a point; no point is expected to lie in the reach of more than four triangles.
-  const std::uint64_t spans = 4 * points + faces;
-  MemoryNeed need;
-  need.device = engine::sample_device_bytes(points, faces, spans);
-  need.host = grid.points() * 28 + points * 32 + 3 * sizeof(engine::SampleSpan) * spans +
-              faces * (72 + 1 + 2 * sizeof(plan::SampleFace) + 8 * bands) + 32 * std::uint64_t(grid.rings) +
-              32 * std::uint64_t(grid.ring_length);
-  return need;
+std::unique_ptr<SphereSampler> sphere_sampler(std::shared_ptr<engine::Gpu> gpu, const SphereGrid& grid) {
+  return std::make_unique<GpuSampler>(std::move(gpu), grid);
 }
 
 } // namespace cowgpu::gpu

@@ -4,12 +4,11 @@
 #include "engine/gpu.hpp"
 #include "host/backend.hpp"
 
+#include <memory>
+
 namespace cowgpu::gpu {
 
-/// Backend::sample on an opened device. Throws engine::Error beside Error.
-SphereSamples sample(engine::Gpu& gpu, std::span<const Vec3> positions, std::span<const Face> faces,
-                     const SphereGrid& grid, Monitor& monitor, RunReport* report);
-
-MemoryNeed sample_memory(const engine::GpuFacts& facts, std::uint64_t faces, const SphereGrid& grid);
+/// Backend::sphere_sampler on an opened device, which is kept open.
+std::unique_ptr<SphereSampler> sphere_sampler(std::shared_ptr<engine::Gpu> gpu, const SphereGrid& grid);
 
 } // namespace cowgpu::gpu

@@ -17,11 +17,33 @@ class GpuTransform final : public SphereTransform {
 public:
   GpuTransform(std::shared_ptr<engine::Gpu> gpu, const engine::SphereTransformShape& shape, const SphereGrid& grid,
                int lmax)
-      : SphereTransform(grid, lmax), gpu_(std::move(gpu)), plan_(plan::legendre(grid, lmax)) {
-    const plan::Seeds seeds = plan::seeds(plan_, int(shape.legendre.lanes), int(shape.legendre.steps));
+      : SphereTransform(grid, lmax), gpu_(std::move(gpu)), shape_(shape) {}
+
+  // On the host the plan with its start values, which are given up once they are on the device.
+  MemoryNeed memory(int fields) const override {
+    const std::uint64_t pairs =
+        std::uint64_t(grid().rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs * plan::block_pairs;
+    const std::uint64_t orders = std::uint64_t(lmax()) + 1;
+    const std::uint64_t steps = orders * (orders / 4 + plan::step_multiple + 1); // steps of all orders, with padding
+    MemoryNeed need;
+    if (grid().shift != 0) need.host += 16 * std::uint64_t(fields) * SphereCoefficients::count(lmax());
+    need.host += 48 * steps + 48 * orders + 64 * pairs + orders * pairs * 17 + (std::uint64_t(1) << 20);
+    need.device =
+        engine::sphere_transform_device_bytes(shape_, gpu_->facts(), lmax(), int(pairs), grid().ring_length, fields);
+    return need;
+  }
+
+  void prepare() override {
+    if (!engine_) translated([&] { make_tables(); });
+  }
+
+private:
+  void make_tables() {
+    plan_ = plan::legendre(grid(), lmax());
+    const plan::Seeds seeds = plan::seeds(plan_, int(shape_.legendre.lanes), int(shape_.legendre.steps));
     steps_ = plan::active_steps(plan_, seeds);
     engine::LegendreInput legendre;
-    legendre.lmax = lmax;
+    legendre.lmax = lmax();
     legendre.polar_pairs = plan_.polar_blocks * plan::block_pairs;
     legendre.t = plan_.t;
     legendre.offset = plan_.offset;
@@ -31,11 +53,11 @@ public:
     legendre.start = seeds.start;
     legendre.seeds = seeds.values;
     engine_ = std::make_unique<engine::SphereTransform>(
-        gpu_->device(), shape, legendre, engine::RingFourierInput{grid.ring_length, lmax + 1, plan_.x, plan_.weight});
+        gpu_->device(), shape_, legendre,
+        engine::RingFourierInput{grid().ring_length, lmax() + 1, plan_.x, plan_.weight});
     for (std::vector<double>* uploaded : {&plan_.a, &plan_.b, &plan_.b_polar}) *uploaded = {};
   }
 
-private:
   void to_grid(int fields, std::span<const std::complex<double>> coefficients, std::span<double> values,
                RingFactor factor, Monitor& monitor, TransformReport& report) override {
     const std::size_t points = grid().points();
@@ -155,6 +177,7 @@ private:
   }
 
   std::shared_ptr<engine::Gpu> gpu_;
+  engine::SphereTransformShape shape_;
   plan::Legendre plan_; // without what was uploaded
   double steps_ = 0;    // steps of the recurrence in one transform
   std::unique_ptr<engine::SphereTransform> engine_;
@@ -178,19 +201,6 @@ std::unique_ptr<SphereTransform> sphere_transform(std::shared_ptr<engine::Gpu> g
                                                   const engine::SphereTransformShape& shape, const SphereGrid& grid,
                                                   int lmax) {
   return std::make_unique<GpuTransform>(std::move(gpu), shape, grid, lmax);
-}
-
-MemoryNeed sphere_transform_memory(const engine::GpuFacts& facts, const engine::SphereTransformShape& shape,
-                                   const SphereGrid& grid, int lmax, int fields) {
-  const std::uint64_t pairs =
-      std::uint64_t(grid.rings / 2 + 1 + plan::block_pairs - 1) / plan::block_pairs * plan::block_pairs;
-  const std::uint64_t orders = std::uint64_t(lmax) + 1;
-  const std::uint64_t steps = orders * (orders / 4 + plan::step_multiple + 1); // steps of all orders, with padding
-  MemoryNeed need;
-  if (grid.shift != 0) need.host += 16 * std::uint64_t(fields) * SphereCoefficients::count(lmax);
-  need.host += 48 * steps + 48 * orders + 64 * pairs + orders * pairs * 17 + (std::uint64_t(1) << 20);
-  need.device = engine::sphere_transform_device_bytes(shape, facts, lmax, int(pairs), grid.ring_length, fields);
-  return need;
 }
 
 } // namespace cowgpu::gpu

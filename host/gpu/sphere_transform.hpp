@@ -17,9 +17,4 @@ std::unique_ptr<SphereTransform> sphere_transform(std::shared_ptr<engine::Gpu> g
                                                   const engine::SphereTransformShape& shape, const SphereGrid& grid,
                                                   int lmax);
 
-/// Host: the plan with its start values, which are given up once they are on the device. Device: see
-/// engine::sphere_transform_device_bytes().
-MemoryNeed sphere_transform_memory(const engine::GpuFacts& facts, const engine::SphereTransformShape& shape,
-                                   const SphereGrid& grid, int lmax, int fields);
-
 } // namespace cowgpu::gpu

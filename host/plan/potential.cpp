@@ -76,9 +76,6 @@ void check(const PotentialProblem& problem) {
   if (!(problem.moments.reference_radius > 0) || !std::isfinite(problem.moments.reference_radius))
     throw Error(Fault::bad_argument,
                 fmt::format("the reference radius is {}: it must be above 0", problem.moments.reference_radius));
-  if (problem.points.size() > (std::size_t(1) << 31))
-    throw Error(Fault::too_large,
-                fmt::format("{} points are too many at once: pass at most 2^31", problem.points.size()));
 }
 
 // Terms of one degree are at most the set's norm there times that of the harmonics.
@@ -153,12 +150,15 @@ PotentialSeries potential_series(const PotentialProblem& problem) {
   return series;
 }
 
-PotentialPoints potential_points(const PotentialProblem& problem, const PotentialSeries& series) {
+PotentialPoints potential_points(const PotentialProblem& problem, const PotentialSeries& series,
+                                 std::span<const Vec3> at) {
   const double radius = problem.moments.reference_radius;
-  const std::size_t count = problem.points.size();
+  const std::size_t count = at.size();
+  if (count > (std::size_t(1) << 31))
+    throw Error(Fault::too_large, fmt::format("{} points are too many at once: pass at most 2^31", count));
   std::vector<double> ratio2(count); // (r/R)^2
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3& p = problem.points[i];
+    const Vec3& p = at[i];
     const double r2 = (p / radius).squaredNorm();
     if (!p.allFinite() || !(r2 < 1e300))
       throw Error(Fault::bad_argument,
@@ -183,7 +183,7 @@ PotentialPoints potential_points(const PotentialProblem& problem, const Potentia
     values->assign(padded, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t from = points.order[i];
-    const Vec3& p = problem.points[from];
+    const Vec3& p = at[from];
     const Vec3 u = p / radius / ratio2[from];
     points.x[i] = u.x();
     points.y[i] = u.y();

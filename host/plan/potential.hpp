@@ -19,6 +19,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace cowgpu::plan {
@@ -57,9 +58,10 @@ struct PotentialPoints {
   static double entries(int top) { return 0.5 * (top + 1) * (top + 2); }
 };
 
-/// Throws Error(point_inside) for a point nearer to the origin than R, naming it and by how much, and Error(bad_argument) for
-/// one that is not finite or farther than 1e150 R.
-PotentialPoints potential_points(const PotentialProblem& problem, const PotentialSeries& series);
+/// Throws Error(point_inside) for a point nearer to the origin than R, naming it and by how much, Error(bad_argument) for
+/// one that is not finite or farther than 1e150 R, and too_large for more than 2^31.
+PotentialPoints potential_points(const PotentialProblem& problem, const PotentialSeries& series,
+                                 std::span<const Vec3> points);
 
 /// From the sums of the sets at each of the plan's points, [set][padded], to the field.
 PotentialField potential_field(const PotentialProblem& problem, const PotentialPoints& points,

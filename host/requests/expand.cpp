@@ -30,12 +30,12 @@ void check(const ExpandRequest& request) {
 // The result, and either the computation or its check.
 MemoryNeed memory_need(const ExpandRequest& request, std::span<const MomentProblem> problems, const Backend& backend) {
   const ExpansionChoice& choice = request.expansions;
-  MemoryNeed need = surfaces_memory(choice, problems.front().faces.size(), backend);
+  MemoryNeed need = surfaces_memory(choice, problems.front().vertices, problems.front().faces, backend);
   if (!choice.mass) return need;
   const std::uint64_t result = 16 * Multipoles::count(choice.lmax);
   if (need.host) need.host += result;
   for (const MomentProblem& problem : problems) { // one after the other, beside the sum of those before
-    const MemoryNeed one = backend.moments_memory(problem);
+    const MemoryNeed one = backend.moments(problem)->memory();
     const std::uint64_t before = &problem == problems.data() ? 0 : result;
     const std::uint64_t check = result + one.host + verify_bytes(problem, request.verify);
     need.host = std::max({need.host, one.host + before, check});

@@ -38,7 +38,7 @@ ExpandPlan plan_expand(const ExpandRequest& request, const Body& body, const Bac
 /// result is given back even where a check failed: see require_sound().
 ///
 /// Throws Error(bad_argument) for a map file without one map that it stands for, or a degree out of range; too_large with
-/// what the machine lacks; what expand_surfaces() and Backend::moments() throw; interrupted.
+/// what the machine lacks; what expand_surfaces() and PreparedMoments::run() throw; interrupted.
 ExpandResult expand(const ExpandRequest& request, Body body, Backend& backend, Monitor& monitor,
                     std::vector<std::string> notes = {});
 

@@ -112,23 +112,23 @@ void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const Ma
   if (flow.time < flow.star.upper) result.map.notes.push_back(star_shape_sentence(flow.star, flow.time));
 }
 
-MemoryNeed expand_flow_memory(const FlowChoice& choice, bool paper, int lmax, std::uint64_t faces,
-                              const Backend& backend) {
-  const std::uint64_t vertices = faces / 2 + 2, coefficients = 6 * 16 * SphereCoefficients::count(lmax);
-  if (!paper && !choice.sheets) {
+MemoryNeed expand_flow_memory(const ExpansionChoice& choice, std::span<const Vec3> vertices,
+                              std::span<const Face> faces, const Backend& backend) {
+  const std::uint64_t coefficients = 6 * 16 * SphereCoefficients::count(choice.lmax);
+  if (!choice.paper && !choice.flow.sheets) {
     // A grid of its own: positions, the six fields, and a batch of rays.
-    MemoryNeed need = backend.distance_field_memory(vertices, faces, std::uint64_t(1) << 18);
-    need.host += grid_points(std::max(choice.grid_degree, surface_grid_degree(lmax))) * 9 * sizeof(double);
+    MemoryNeed need = backend.distance_field(vertices, faces)->memory(std::uint64_t(1) << 18);
+    need.host += grid_points(std::max(choice.flow.grid_degree, surface_grid_degree(choice.lmax))) * 9 * sizeof(double);
     need.host += 3 * coefficients; // coefficients on the three grids
     return need;
   }
   // Paths and positions of the finest vertices, its faces, and caps of these.
-  const std::uint64_t times = std::uint64_t(1) << (2 * choice.refinements);
-  MemoryNeed need = backend.distance_flow_memory(vertices, faces, times * vertices);
-  need.host += times * (vertices * 100 + faces * 120);
-  need.host += (std::uint64_t(choice.refinements) + 2) * coefficients; // each level's
+  const std::uint64_t times = std::uint64_t(1) << (2 * choice.flow.refinements);
+  MemoryNeed need = backend.distance_flow(vertices, faces)->memory(times * vertices.size());
+  need.host += times * (vertices.size() * 100 + faces.size() * 120);
+  need.host += (std::uint64_t(choice.flow.refinements) + 2) * coefficients; // each level's
   // The six fields on their grid, and on the coarser one that shows its error.
-  need.host += grid_points(sheets_grid_degree(lmax)) * 6 * 2 * sizeof(double);
+  need.host += grid_points(sheets_grid_degree(choice.lmax)) * 6 * 2 * sizeof(double);
   return need;
 }
 

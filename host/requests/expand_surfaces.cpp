@@ -95,12 +95,13 @@ void check_expansions(const ExpansionChoice& choice) {
                                                      : "the flow, whose map is not kept in a file"));
 }
 
-MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend) {
+MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::span<const Vec3> vertices, std::span<const Face> faces,
+                           const Backend& backend) {
   if (choice.maps.empty()) return {};
-  MemoryNeed need = expand_surface_memory(faces, choice.lmax, backend);
+  MemoryNeed need = expand_surface_memory(faces.size(), choice.lmax, backend);
   need.host += (choice.maps.size() - 1) * 6 * 16 * SphereCoefficients::count(choice.lmax);
   if (choice.maps.back() == MapMethod::flow) {
-    const MemoryNeed flow = expand_flow_memory(choice.flow, choice.paper, choice.lmax, faces, backend);
+    const MemoryNeed flow = expand_flow_memory(choice, vertices, faces, backend);
     need.host += flow.host;
     need.device = std::max(need.device, flow.device);
   }

@@ -34,8 +34,9 @@ struct ExpansionChoice {
 /// map that it stands for.
 void check_expansions(const ExpansionChoice& choice);
 
-/// What the largest of the surface expansions needs, and all results; nothing where none is asked for.
-MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend);
+/// What the largest of the expansions of a surface needs, and all results; nothing where none is asked for.
+MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::span<const Vec3> vertices, std::span<const Face> faces,
+                           const Backend& backend);
 
 /// Maps, or reads the map, and expands, about the body's origin; by the paper's recipe about the mesh's. Throws
 /// Error(mesh_edge_manifold, mesh_vertex_manifold) and what maps, read_map() and expand_surface() throw.

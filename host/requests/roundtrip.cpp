@@ -25,7 +25,7 @@ RoundtripResult plan_roundtrip(const RoundtripRequest& request, const Backend& b
   result.device = backend.facts();
   result.grid = make_grid(request.grid, request.lmax);
   result.setup_seconds = seconds_since(start);
-  result.memory = backend.sphere_transform_memory(result.grid, request.lmax, request.fields);
+  result.memory = backend.sphere_transform(result.grid, request.lmax)->memory(request.fields);
   result.memory.host +=
       std::uint64_t(request.fields) * (8 * result.grid.points() + 32 * SphereCoefficients::count(request.lmax));
   check_memory(result.memory, backend, "lower --lmax or --fields");
@@ -36,6 +36,7 @@ RoundtripResult roundtrip(const RoundtripRequest& request, Backend& backend, Mon
   RoundtripResult result = plan_roundtrip(request, backend);
   const auto start = Clock::now();
   const auto transform = backend.sphere_transform(result.grid, request.lmax);
+  transform->prepare();
   result.setup_seconds += seconds_since(start);
   const SphereCoefficients before = random_coefficients(request.lmax, request.fields, request.seed);
   SphereCoefficients after(request.lmax, request.fields);

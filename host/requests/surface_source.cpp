@@ -53,7 +53,7 @@ SurfaceSource from_mesh(const SurfaceChoice& choice, int largest_order, Backend&
   source.mesh = mesh.name;
   source.mesh_hash = mesh.sha256;
   source.notes = body_notes(source.body->surface, monitor);
-  check_memory(surfaces_memory(maps, mesh.faces.size(), backend), backend, "lower --lmax");
+  check_memory(surfaces_memory(maps, mesh.vertices, mesh.faces, backend), backend, "lower --lmax");
   std::vector<SurfaceResult> results = expand_surfaces(maps, false, *source.body, backend, monitor);
   check_surfaces(results);
   SurfaceResult& result = results.front();
@@ -101,7 +101,7 @@ int default_resolution(int order) {
 
 MemoryNeed rebuild_memory(int order, int resolution, const Backend& backend) {
   const SphereGrid grid = make_grid(GridKind::clenshaw_curtis, resolution);
-  MemoryNeed need = backend.sphere_transform_memory(grid, order, 3);
+  MemoryNeed need = backend.sphere_transform(grid, order)->memory(3);
   // Values, vertices, normals and two faces a point; for the measures nine fields on a grid of degree 5/2 order.
   const std::uint64_t fine = std::uint64_t(5 * order / 2 + 2);
   need.host += grid.points() * 128 + 2 * fine * fine * 9 * 8;

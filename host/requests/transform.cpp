@@ -16,7 +16,7 @@ namespace {
 // Input, result, the same as real coefficients, the file's image.
 MemoryNeed affordable(const TransformPlan& plan, const Backend& backend) {
   const int fields = int(plan.names.size());
-  MemoryNeed need = backend.sphere_transform_memory(plan.grid, plan.lmax, fields);
+  MemoryNeed need = backend.sphere_transform(plan.grid, plan.lmax)->memory(fields);
   const auto n = std::uint64_t(fields), degrees = std::uint64_t(plan.lmax) + 1;
   need.host += n * (16 * plan.grid.points() + 32 * SphereCoefficients::count(plan.lmax) + 8 * degrees * degrees);
   check_memory(need, backend, "lower --lmax or transform fewer fields at once");
@@ -83,6 +83,7 @@ AnalyseResult analyse(const AnalyseRequest& request, Backend& backend, Monitor& 
   TransformRun& run = result.run = planned_run(request, backend);
   CoefficientFile& out = result.coefficients;
   const auto transform = backend.sphere_transform(run.plan.grid, run.plan.lmax);
+  transform->prepare();
   run.setup_seconds = seconds_since(start);
   out.coefficients = SphereCoefficients(run.plan.lmax, in.fields());
   out.convention = request.convention;
@@ -104,6 +105,7 @@ SynthesiseResult synthesise(const SynthesiseRequest& request, Backend& backend, 
   out.convention = request.input.convention;
   out.names = run.plan.names;
   const auto transform = backend.sphere_transform(out.grid, run.plan.lmax);
+  transform->prepare();
   run.setup_seconds = seconds_since(start);
   out.values.resize(std::size_t(in.fields) * out.grid.points());
   const SphereCoefficients low = run.plan.lmax < in.lmax ? resized(in, run.plan.lmax) : SphereCoefficients();

@@ -130,8 +130,9 @@ SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const 
                 fmt::format("the map has {} positions and the mesh {} vertices: it is of another mesh",
                             map.positions.size(), vertices.size()));
   const auto sampler = [&](const SphereGrid& grid, ExpandSurfaceReport& found) {
-    const SphereSamples samples = options.closest_point ? closest_samples(map.positions, faces, grid, monitor)
-                                                        : backend.sample(map.positions, faces, grid, monitor);
+    const SphereSamples samples = options.closest_point
+                                      ? closest_samples(map.positions, faces, grid, monitor)
+                                      : backend.sphere_sampler(grid)->sample(map.positions, faces, monitor);
     found.faces_hit = samples.faces_hit;
     found.flipped_faces = samples.flipped_faces;
     found.folded_points = samples.folded_points;
@@ -143,8 +144,8 @@ SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const 
 
 MemoryNeed expand_surface_memory(std::uint64_t faces, int lmax, const Backend& backend) {
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, surface_grid_degree(lmax));
-  const MemoryNeed sampling = backend.sample_memory(faces, grid);
-  const MemoryNeed transform = backend.sphere_transform_memory(grid, lmax, fields);
+  const MemoryNeed sampling = backend.sphere_sampler(grid)->memory(faces);
+  const MemoryNeed transform = backend.sphere_transform(grid, lmax)->memory(fields);
   const std::uint64_t point = sizeof(double);
   const std::uint64_t coefficients = 2 * fields * SphereCoefficients::count(lmax) * sizeof(std::complex<double>);
   // Positions and all six fields beside the samples; then the six fields beside the transform.

@@ -17,7 +17,7 @@ struct ExpandSurfaceOptions {
   int lmax = 0;               ///< 0 to largest_surface_degree
   Vec3 origin = Vec3::Zero(); ///< origin of f_r, f_dtheta and f_dphi, in mesh coordinates
   /// Look a direction up at the closest point of the chord triangles (closest_point.hpp), not along the ray
-  /// (Backend::sample).
+  /// (SphereSampler).
   bool closest_point = false;
   bool signed_dphi = true; ///< false: expand |f_dphi|, as the paper's table does
   int grid_degree = 0;     ///< degree of the grid sampled on, at least 2 lmax; 0: surface_grid_degree(lmax)
@@ -66,7 +66,7 @@ SurfaceExpansion expand_surface(const SurfaceSampler& sampler, const ExpandSurfa
 /// x, y, z; removes the mean of the two angles; and analyses all six to lmax. The angles are 0 where F is the origin.
 ///
 /// `faces` and `vertices` are the mesh's; the map has a position for each vertex. Throws Error(bad_argument) for lmax out
-/// of range, an origin that is not finite or a map of another mesh, and what Backend::sample and sphere_transform throw.
+/// of range, an origin that is not finite or a map of another mesh, and what SphereSampler and SphereTransform throw.
 SurfaceExpansion expand_surface(std::span<const Vec3> vertices, std::span<const Face> faces, const SphereMap& map,
                                 const ExpandSurfaceOptions& options, Backend& backend, Monitor& monitor,
                                 ExpandSurfaceReport* report = nullptr);

@@ -33,7 +33,7 @@ Multipoles mass_moments(std::span<const MomentProblem> problems, Backend& backen
   for (const MomentProblem& problem : problems) {
     RunReport run;
     const std::optional<MomentProblem> near = near_problem(problem);
-    Multipoles q = backend.moments(near ? *near : problem, monitor, &run);
+    Multipoles q = backend.moments(near ? *near : problem)->run(monitor, &run);
     if (norms) norms->push_back(degree_norms(q));
     if (near) q = translated(problem, *near, q);
     if (&problem == problems.data())

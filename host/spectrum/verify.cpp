@@ -92,7 +92,7 @@ Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify h
   }
   accuracy.triangles = part.faces.size();
   accuracy.seed = seed;
-  const Multipoles done = backend.moments(part, monitor);
+  const Multipoles done = backend.moments(part)->run(monitor);
   const MomentTerms terms = moment_terms(part, threads_of(backend), monitor);
   plan::DegreeSums sums = plan::degree_sums(part);
   // The norms are the second recursion's: the backend's may be wrong.

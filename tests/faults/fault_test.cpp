@@ -58,7 +58,7 @@ std::vector<Verb> verbs() {
     problem.lmax = 20;
     Monitor monitor;
     Bits bits;
-    append(bits, backend.moments(problem, monitor).values);
+    append(bits, backend.moments(problem)->run(monitor).values);
     return bits;
   };
   const auto transform = [](Backend& backend) {
@@ -75,7 +75,8 @@ std::vector<Verb> verbs() {
   };
   const auto sample = [body, unit](Backend& backend) {
     Monitor monitor;
-    const auto found = backend.sample(unit, body.faces, make_grid(GridKind::gauss_legendre, 12), monitor);
+    const auto found =
+        backend.sphere_sampler(make_grid(GridKind::gauss_legendre, 12))->sample(unit, body.faces, monitor);
     Bits bits;
     append(bits, found.faces);
     return bits;
@@ -251,7 +252,7 @@ TEST_CASE("a wish to stop ends the wait for a device that hangs, and its memory 
   problem.reference_radius = 2;
   problem.lmax = 20;
   faults.arm(VulkanCall::hang, 0, for_ever);
-  const auto error = error_of([&] { backend->moments(problem, monitor); });
+  const auto error = error_of([&] { backend->moments(problem)->run(monitor); });
   REQUIRE(error);
   CHECK(error->fault() == Fault::interrupted);
   CHECK_THAT(error->what(), Contains("stopped") && Contains(backend->facts().name));

@@ -122,9 +122,9 @@ TEST_CASE("sheets of a map without folds are what rays sample", "[flow_map]") {
     CHECK(report.folded_points == 0);
     CHECK(std::abs(report.least_degree - 1) < 1e-12);
     CHECK(std::abs(report.largest_degree - 1) < 1e-12);
-    const auto sampled =
-        surface_fields(sample_positions(backend->sample(map.positions, map.faces, grid, monitor), map.faces, vertices),
-                       grid, Vec3::Zero(), true);
+    const auto sampled = surface_fields(
+        sample_positions(backend->sphere_sampler(grid)->sample(map.positions, map.faces, monitor), map.faces, vertices),
+        grid, Vec3::Zero(), true);
     REQUIRE(sheets.size() == sampled.size());
     double worst = 0;
     for (std::size_t i = 0; i < sheets.size(); ++i) worst = std::max(worst, std::abs(sheets[i] - sampled[i]));

@@ -363,7 +363,7 @@ TEST_CASE("starts, times and tolerances out of range are refused, and a wish to 
   }
   RawMesh open = mesh;
   open.faces.pop_back();
-  CHECK_THROWS_AS(make_cpu_backend()->distance_flow(open.vertices, open.faces), Error);
+  CHECK_THROWS_AS(make_cpu_backend()->distance_flow(open.vertices, open.faces)->prepare(), Error);
 }
 
 TEST_CASE("over the benchmark tolerances bring what they promise, distances never fall, rays come back",

@@ -86,6 +86,8 @@ struct Case {
 // Distances and sides that change from place to place without a pattern: nothing can be settled with them.
 class Nonsense : public DistanceField {
 public:
+  MemoryNeed memory(std::uint64_t) const override { return {}; }
+  void prepare() override {}
   ClosestPoints closest(std::span<const Vec3> queries, const ClosestOptions& options, Monitor&,
                         ClosestReport*) override {
     ClosestPoints points;
@@ -106,6 +108,8 @@ public:
 class UnsureUp : public DistanceField {
 public:
   explicit UnsureUp(std::unique_ptr<DistanceField> field) : field_(std::move(field)) {}
+  MemoryNeed memory(std::uint64_t queries) const override { return field_->memory(queries); }
+  void prepare() override { field_->prepare(); }
   ClosestPoints closest(std::span<const Vec3> queries, const ClosestOptions& options, Monitor& monitor,
                         ClosestReport* report) override {
     ClosestPoints points = field_->closest(queries, options, monitor, report);
@@ -121,7 +125,8 @@ private:
 
 class UnsureBackend : public CpuWithAFault {
 public:
-  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices, std::span<const Face> faces) override {
+  std::unique_ptr<DistanceField> distance_field(std::span<const Vec3> vertices,
+                                                std::span<const Face> faces) const override {
     return std::make_unique<UnsureUp>(CpuWithAFault::distance_field(vertices, faces));
   }
 };

@@ -231,7 +231,7 @@ TEST_CASE("the memory announced for sampling covers the result", "[sample]") {
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, 200);
   Paths paths;
   paths.each([&](Backend& backend) {
-    const MemoryNeed need = backend.sample_memory(5000, grid);
+    const MemoryNeed need = backend.sphere_sampler(grid)->memory(5000);
     CHECK(need.host > 28 * grid.points());
     CHECK((need.device > 28 * grid.points()) == (backend.facts().type != "cpu"));
   });
@@ -307,7 +307,8 @@ TEST_CASE("sampling stops when asked", "[sample]") {
   Paths paths;
   paths.each([&](Backend& backend) {
     try {
-      (void)backend.sample(map.positions, map.faces, make_grid(GridKind::gauss_legendre, 31), impatient);
+      (void)backend.sphere_sampler(make_grid(GridKind::gauss_legendre, 31))
+          ->sample(map.positions, map.faces, impatient);
       FAIL("not stopped");
     } catch (const Error& error) {
       CHECK(error.fault() == Fault::interrupted);

@@ -210,15 +210,29 @@ public:
   explicit Faulty(Fault fault, bool loses_a_triangle = false)
       : fault_(std::move(fault)), loses_a_triangle_(loses_a_triangle) {}
 
-  Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
+  std::unique_ptr<PreparedMoments> moments(const MomentProblem& problem) const override {
     MomentProblem other = problem;
     if (loses_a_triangle_) other.faces = other.faces.first(other.faces.size() - 1);
-    Multipoles q = CpuWithAFault::moments(other, monitor, report);
-    fault_(q);
-    return q;
+    return std::make_unique<FaultyMoments>(CpuWithAFault::moments(other), fault_);
   }
 
 private:
+  class FaultyMoments final : public PreparedMoments {
+  public:
+    FaultyMoments(std::unique_ptr<PreparedMoments> right, Fault fault)
+        : right_(std::move(right)), fault_(std::move(fault)) {}
+    MemoryNeed memory() const override { return right_->memory(); }
+    Multipoles run(Monitor& monitor, RunReport* report) const override {
+      Multipoles q = right_->run(monitor, report);
+      fault_(q);
+      return q;
+    }
+
+  private:
+    std::unique_ptr<PreparedMoments> right_;
+    Fault fault_;
+  };
+
   Fault fault_;
   bool loses_a_triangle_;
 };

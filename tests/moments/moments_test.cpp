@@ -196,7 +196,7 @@ TEST_CASE("the time and the work of a run are reported", "[moments]") {
     const bool native = backend.facts().type == "cpu";
     CHECK(report.kernels.empty() == native);
     for (const KernelTime& kernel : report.kernels) CHECK((kernel.dispatches > 0 && kernel.seconds >= 0));
-    const MemoryNeed need = backend.moments_memory(problem);
+    const MemoryNeed need = backend.moments(problem)->memory();
     CHECK(need.host > 0);
     CHECK((need.device == 0) == native);
   });
@@ -229,7 +229,7 @@ TEST_CASE("progress rises to 1", "[moments][monitor]") {
   const MomentProblem problem = moment_problem(mesh, 120);
   paths.each([&](Backend& backend) {
     Listener listener;
-    backend.moments(problem, listener);
+    backend.moments(problem)->run(listener);
     CHECK(listener.rising);
     CHECK(listener.last == Approx(1).margin(0.1));
   });
@@ -248,7 +248,7 @@ TEST_CASE("work that is told to stop stops, and the device works on", "[moments]
     const Multipoles before = moments(*backend, problem);
     const auto stops = [&](Monitor& monitor) {
       try {
-        backend->moments(problem, monitor);
+        backend->moments(problem)->run(monitor);
       } catch (const Error& error) {
         return error.fault() == Fault::interrupted;
       }

@@ -220,7 +220,7 @@ TEST_CASE("outside, the series of a body falls on the polyhedron as the order gr
       for (Vec3& p : there) p += body.origin;
       const auto truth = physics::exact_field(body, there, Derivatives::second, 0, silent).field;
       for (const int lmax : {0, 2, 4, 8, 20, 40, 80}) {
-        const PotentialField found = potential(*backend, {q, points, lmax});
+        const PotentialField found = potential(*backend, {q, lmax}, points);
         const double bound = std::max(1e-12, std::pow(1 / far, lmax + 1)), n = lmax + 2;
         for (std::size_t i = 0; i < points.size(); ++i) {
           CHECK(std::abs(found.value[i] / truth.value[i] - 1) <= bound);

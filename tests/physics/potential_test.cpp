@@ -56,7 +56,7 @@ TEST_CASE("the series of point masses is their potential, with its first and sec
   const std::vector<Vec3> points = {{1.5, -0.3, 0.7}, {0, 0, 1.6}, {0, 0, -1.6}, {2, 0, 0}, {-30, 50, 20}};
   Paths paths;
   paths.each([&](Backend& backend) {
-    const PotentialField field = potential(backend, {q, points, lmax});
+    const PotentialField field = potential(backend, {q, lmax}, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto truth = of_points(cluster, points[i]);
       const double r = points[i].norm();
@@ -99,7 +99,7 @@ TEST_CASE("the series of a rod is its logarithm, on the axis and beside it", "[p
   const std::vector<Vec3> points = {{0, 0, 1}, {0, 0, -1.5}, {0.8, 0.6, 0}, {1, -2, 0.5}};
   Paths paths;
   paths.each([&](Backend& backend) {
-    const PotentialField field = potential(backend, {q, points, lmax});
+    const PotentialField field = potential(backend, {q, lmax}, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3& p = points[i];
       const double a = (p - Vec3(0, 0, h)).norm(), b = (p + Vec3(0, 0, h)).norm();
@@ -122,7 +122,7 @@ TEST_CASE("both paths sum what the reference sums, at any number of points and t
     for (const std::size_t count : {0, 1, 7, 13, 1025}) {
       if (lmax == 512 && count == 7) continue;
       const std::vector<Vec3> points = points_outside(count, 1.3, 5, unsigned(count));
-      compare_potential(paths, {q, points, lmax}, figure);
+      compare_potential(paths, {q, lmax}, points, figure);
     }
   }
 }
@@ -132,7 +132,7 @@ TEST_CASE("value and gradient alone are the same sums", "[potential]") {
   const std::vector<Vec3> points = points_outside(77, 2, 3, 1);
   Paths paths;
   for (const Derivatives derivatives : {Derivatives::none, Derivatives::first})
-    compare_potential(paths, {q, points, 20, derivatives}, 1e-13);
+    compare_potential(paths, {q, 20, derivatives}, points, 1e-13);
 }
 
 TEST_CASE("next to the axis no order that counts is lost up to the largest degree", "[potential]") {
@@ -142,7 +142,7 @@ TEST_CASE("next to the axis no order that counts is lost up to the largest degre
   for (const double sine : {1e-3, 0.1, 0.3, 0.36788, 0.45, 0.9})
     points.emplace_back(0.6 * sine, -0.8 * sine, std::sqrt(1 - sine * sine));
   Paths paths;
-  compare_potential(paths, {q, points, lmax, Derivatives::first}, 5e-11);
+  compare_potential(paths, {q, lmax, Derivatives::first}, points, 5e-11);
 }
 
 TEST_CASE("degrees left out far away change nothing that rounding does not", "[potential]") {
@@ -151,12 +151,12 @@ TEST_CASE("degrees left out far away change nothing that rounding does not", "[p
   Paths paths;
   paths.each([&](Backend& backend) {
     RunReport with, without;
-    const PotentialField some = potential(backend, {q, points, 100}, &with),
-                         all = potential(backend, {q, points, 100, Derivatives::second, 0}, &without);
+    const PotentialField some = potential(backend, {q, 100}, points, &with),
+                         all = potential(backend, {q, 100, Derivatives::second, 0}, points, &without);
     CHECK(with.elements < 0.8 * without.elements);
     double worst = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double scale = potential_scale({q, points, 100}, points[i])[0];
+      const double scale = potential_scale({q, 100}, points[i])[0];
       worst = std::max(worst, std::abs(some.value[i] - all.value[i]) / scale);
     }
     check_at_most(worst, 1e-15, "left out");
@@ -171,7 +171,7 @@ TEST_CASE("the second derivatives of a potential have no trace, and the potentia
   const std::vector<Vec3> points = points_outside(40, 2, 100, 7);
   Paths paths;
   paths.each([&](Backend& backend) {
-    const PotentialField field = potential(backend, {ball, points, 0});
+    const PotentialField field = potential(backend, {ball, 0}, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double r = points[i].norm();
       CHECK(std::abs(field.value[i] * r / 7 - 1) < 2e-15);
@@ -191,13 +191,13 @@ TEST_CASE("units of length only scale a potential, however large or small they a
   const std::vector<Vec3> points = points_outside(9, 1, 4, 3);
   const Multipoles q = random_moments(6, 1, 4);
   paths.each([&](Backend& backend) {
-    const PotentialField here = potential(backend, {q, points, 6});
+    const PotentialField here = potential(backend, {q, 6}, points);
     for (const double unit : {0x1p-200, 0x1p200}) {
       Multipoles scaled = q;
       scaled.reference_radius = unit;
       std::vector<Vec3> there = points;
       for (Vec3& p : there) p *= unit;
-      const PotentialField field = potential(backend, {scaled, there, 6});
+      const PotentialField field = potential(backend, {scaled, 6}, there);
       for (std::size_t i = 0; i < points.size(); ++i) {
         CHECK(field.value[i] * unit == Approx(here.value[i]).epsilon(1e-15));
         CHECK(field.hessian[i][1] * unit * unit * unit == Approx(here.hessian[i][1]).epsilon(1e-15));
@@ -216,7 +216,7 @@ TEST_CASE("points inside, points that are none and degrees out of range are refu
   paths.each([&](Backend& backend) {
     const auto fault = [&](const Multipoles& moments, const Vec3& at, int lmax, const char* word) {
       const std::vector<Vec3> points = {Vec3(3, 0, 0), at};
-      return fault_of([&] { potential(backend, {moments, points, lmax}); }, word);
+      return fault_of([&] { potential(backend, {moments, lmax}, points); }, word);
     };
     CHECK(fault(q, Vec3(0, 1, 0), 4, "point 1 is 1 from the origin of the moments, 1 inside") == Fault::point_inside);
     CHECK(fault(q, Vec3::Zero(), 4, "point 1 is 0") == Fault::point_inside);
@@ -245,9 +245,9 @@ TEST_CASE("a potential stops when asked to, and says how far it is", "[potential
   const std::vector<Vec3> points = points_outside(1000, 1, 2, 1);
   Paths paths;
   paths.each([&](Backend& backend) {
-    CHECK(fault_of([&] { backend.potential({q, points, 30}, impatient); }, "") == Fault::interrupted);
+    CHECK(fault_of([&] { backend.exterior_potential({q, 30})->at(points, impatient); }, "") == Fault::interrupted);
     Watching watching;
-    backend.potential({q, points, 30}, watching);
+    backend.exterior_potential({q, 30})->at(points, watching);
     CHECK(watching.last > 0);
   });
 }
@@ -257,8 +257,8 @@ TEST_CASE("the same potential on the same device has the same bits", "[potential
   const std::vector<Vec3> points = points_outside(500, 1, 9, 1);
   Paths paths;
   paths.each([&](Backend& backend) {
-    const PotentialField first = potential(backend, {q, points, 60});
-    CHECK(same_bits(first, potential(backend, {q, points, 60})));
+    const PotentialField first = potential(backend, {q, 60}, points);
+    CHECK(same_bits(first, potential(backend, {q, 60}, points)));
   });
 }
 
@@ -271,14 +271,14 @@ TEST_CASE("a small budget of loop iterations takes more dispatches to the same b
   const Multipoles q = random_moments(100, 1, 1);
   const std::vector<Vec3> points = points_outside(333, 1, 9, 1);
   RunReport few, many;
-  CHECK(same_bits(potential(*usual, {q, points, 100}, &few), potential(*small, {q, points, 100}, &many)));
+  CHECK(same_bits(potential(*usual, {q, 100}, points, &few), potential(*small, {q, 100}, points, &many)));
   REQUIRE((few.kernels.size() == 1 && many.kernels.size() == 1));
   CHECK(few.kernels[0].dispatches == 1);
   CHECK(many.kernels[0].dispatches > 35);
   CHECK(small->validation_messages() == std::vector<std::string>{});
   options.iteration_budget = 90;
   const auto none = gpu_backend(options);
-  CHECK(fault_of([&] { potential(*none, {q, points, 100}); }, "loop iterations") == Fault::too_large);
+  CHECK(fault_of([&] { potential(*none, {q, 100}, points); }, "loop iterations") == Fault::too_large);
 }
 
 TEST_CASE("several batches of points on Vulkan are as good as one", "[potential][vulkan]") {
@@ -286,10 +286,10 @@ TEST_CASE("several batches of points on Vulkan are as good as one", "[potential]
   if (!gpu) return skip_without_gpu();
   const Multipoles q = random_moments(5, 1, 1);
   const std::vector<Vec3> points = points_outside(9000, 1, 2, 1);
-  const PotentialField field = potential(*gpu, {q, points, 5}), truth = potential(*make_cpu_backend(), {q, points, 5});
+  const PotentialField field = potential(*gpu, {q, 5}, points), truth = potential(*make_cpu_backend(), {q, 5}, points);
   double worst = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
-    worst = std::max(worst, std::abs(field.value[i] - truth.value[i]) / potential_scale({q, points, 5}, points[i])[0]);
+    worst = std::max(worst, std::abs(field.value[i] - truth.value[i]) / potential_scale({q, 5}, points[i])[0]);
   check_at_most(worst, 1e-14, "values");
   CHECK(gpu->validation_messages() == std::vector<std::string>{});
 }
@@ -299,7 +299,7 @@ TEST_CASE("a potential that the device cuts short is an error, not an answer", "
   engine::Gpu gpu("auto", true);
   const Multipoles q = random_moments(400, 1, 1);
   const std::vector<Vec3> points(64, Vec3(0, 0, 1));
-  const PotentialProblem problem{q, points, 400, Derivatives::none};
+  const PotentialProblem problem{q, 400, Derivatives::none};
   const plan::PotentialSeries series = plan::potential_series(problem);
   // All orders in one dispatch: more iterations than software devices run.
   engine::Potential kernel(gpu.device(), {400, 1, series.table, 1U << 30});

@@ -187,7 +187,7 @@ TEST_CASE("multipoles turned are those of the turned body, of every kind and for
   const RawMesh mesh = load_mesh("builtin:cow@1");
   const auto moments = [&](RawMesh raw) {
     const Body body = make_body(ClosedSurface::from(std::move(raw)), {}, 1);
-    return make_cpu_backend()->moments(mass_problems(body, 20, default_cut_off).front(), silent);
+    return make_cpu_backend()->moments(mass_problems(body, 20, default_cut_off).front())->run(silent);
   };
   const auto as_set = [](const Multipoles& q) {
     CoefficientSet set(q.lmax, 1);

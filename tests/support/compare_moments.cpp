@@ -75,7 +75,7 @@ void Paths::compare(const MomentProblem& problem, double figure, double toleranc
 
 Multipoles moments(Backend& backend, const MomentProblem& problem, RunReport* report) {
   Monitor silent;
-  return backend.moments(problem, silent, report);
+  return backend.moments(problem)->run(silent, report);
 }
 
 void compare_path(Backend& backend, const MomentProblem& problem, std::span<const long double> reference,

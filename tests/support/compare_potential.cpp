@@ -67,9 +67,10 @@ std::vector<Vec3> points_outside(std::size_t count, double radius, double farthe
   return points;
 }
 
-PotentialField potential(Backend& backend, const PotentialProblem& problem, RunReport* report) {
+PotentialField potential(Backend& backend, const PotentialProblem& problem, std::span<const Vec3> points,
+                         RunReport* report) {
   Monitor silent;
-  return backend.potential(problem, silent, report);
+  return backend.exterior_potential(problem)->at(points, silent, report);
 }
 
 std::array<double, 3> potential_scale(const PotentialProblem& problem, const Vec3& at) {
@@ -87,19 +88,19 @@ std::array<double, 3> potential_scale(const PotentialProblem& problem, const Vec
   return scale;
 }
 
-void compare_potential(Paths& paths, const PotentialProblem& problem, double figure) {
+void compare_potential(Paths& paths, const PotentialProblem& problem, std::span<const Vec3> points, double figure) {
   const reference::ExteriorPotential<long double> reference(problem.moments, problem.lmax);
-  const std::size_t count = problem.points.size(), step = count / 64 + 1;
+  const std::size_t count = points.size(), step = count / 64 + 1;
   std::vector<reference::PotentialAt<long double>> truth;
   std::vector<std::array<double, 3>> scales;
   for (std::size_t i = 0; i < count; i += step) {
-    truth.push_back(reference(problem.points[i].cast<long double>()));
-    scales.push_back(potential_scale(problem, problem.points[i]));
+    truth.push_back(reference(points[i].cast<long double>()));
+    scales.push_back(potential_scale(problem, points[i]));
   }
   const bool with_gradient = problem.derivatives != Derivatives::none,
              with_hessian = problem.derivatives == Derivatives::second;
   paths.each([&](Backend& backend) {
-    const PotentialField field = potential(backend, problem);
+    const PotentialField field = potential(backend, problem, points);
     REQUIRE(field.value.size() == count);
     REQUIRE(field.gradient.size() == (with_gradient ? count : 0));
     REQUIRE(field.hessian.size() == (with_hessian ? count : 0));

@@ -5,6 +5,7 @@
 #include "tests/support/compare_moments.hpp"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace cowgpu::test {
@@ -25,14 +26,15 @@ Multipoles random_moments(int lmax, double radius, unsigned seed);
 std::vector<Vec3> points_outside(std::size_t count, double radius, double farthest, unsigned seed);
 
 /// Without anybody watching.
-PotentialField potential(Backend& backend, const PotentialProblem& problem, RunReport* report = nullptr);
+PotentialField potential(Backend& backend, const PotentialProblem& problem, std::span<const Vec3> points,
+                         RunReport* report = nullptr);
 
 /// Root mean square over the sphere through `at` of value, of the largest gradient and of the largest second derivative.
 std::array<double, 3> potential_scale(const PotentialProblem& problem, const Vec3& at);
 
 /// Errors against the reference in 80-bit arithmetic, at no more than about 64 of the points, are at most `figure` of
 /// potential_scale() on every path.
-void compare_potential(Paths& paths, const PotentialProblem& problem, double figure);
+void compare_potential(Paths& paths, const PotentialProblem& problem, std::span<const Vec3> points, double figure);
 
 bool same_bits(const PotentialField& a, const PotentialField& b);
 

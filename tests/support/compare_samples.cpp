@@ -23,7 +23,7 @@ using Exact =
 
 SphereSamples sample(Backend& backend, const MappedMesh& map, const SphereGrid& grid, RunReport* report) {
   Monitor silent;
-  return backend.sample(map.positions, map.faces, grid, silent, report);
+  return backend.sphere_sampler(grid)->sample(map.positions, map.faces, silent, report);
 }
 
 bool compare_samples(Paths& paths, const MappedMesh& map, const SphereGrid& grid, double figure) {

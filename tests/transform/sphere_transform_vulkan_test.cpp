@@ -355,9 +355,10 @@ TEST_CASE("the memory of a transform is of order lmax^2 and points", "[transform
     grid.lmax = lmax;
     grid.rings = lmax + 1;
     grid.ring_length = 2 * lmax + 2;
-    const MemoryNeed one = backend->sphere_transform_memory(grid, lmax, 1);
-    const MemoryNeed three = backend->sphere_transform_memory(grid, lmax, 3);
-    const MemoryNeed many = backend->sphere_transform_memory(grid, lmax, most_fields);
+    const auto transform = backend->sphere_transform(grid, lmax);
+    const MemoryNeed one = transform->memory(1);
+    const MemoryNeed three = transform->memory(3);
+    const MemoryNeed many = transform->memory(most_fields);
     INFO("lmax " << lmax << ": " << one.host << " and " << one.device << " bytes");
     const double square = double(lmax + 1) * (lmax + 1);
     CHECK(double(one.host) < 30 * square + (4 << 20));
