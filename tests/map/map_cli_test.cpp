@@ -267,12 +267,10 @@ TEST_CASE("infinite shear is null in the JSON of a map, and flat triangles are l
   for (Vec3& p : map.positions) p.normalize();
   const Face& face = surface.faces()[9];
   map.positions[face[0]] = map.positions[face[1]];
-  MapReport report;
-  report.mesh = &surface.closed().mesh();
-  report.map = &map;
+  MapResult report{surface, map};
   report.quality = judge(surface, map, 4);
   std::string text, screen;
-  write_json(report, [&](std::string_view part) { text += part; });
+  write_json(report, {}, [&](std::string_view part) { text += part; });
   write_screen(report, [&](std::string_view part) { screen += part; });
   const auto quality = nlohmann::json::parse(text)["quality"];
   CHECK(quality["shear"]["values"].back().is_null());
