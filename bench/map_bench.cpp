@@ -12,7 +12,7 @@
 #include "host/mesh/subdivide.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/expand_surface.hpp"
-#include "host/spectrum/paper_tables.hpp"
+#include "host/paper/surface_tables.hpp"
 
 #include "bench/command_line.hpp"
 

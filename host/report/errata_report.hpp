@@ -1,7 +1,7 @@
 // What is wrong in "Higher multipoles of the cow", with both numbers (host/requests/errata.hpp).
 #pragma once
 
-#include "host/physics/errata.hpp"
+#include "host/paper/errata.hpp"
 #include "host/report/result.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,8 +12,8 @@
 namespace cowgpu {
 
 struct ErrataResult {
-  std::vector<physics::ErratumNumber> numbers; ///< by erratum
-  std::vector<std::string> notes;              ///< set by the caller
+  std::vector<physics::Comparison> numbers; ///< by erratum
+  std::vector<std::string> notes;           ///< set by the caller
 };
 
 /// Every erratum with its numbers, after data/schemas/cowgpu.errata.v1.json.

@@ -7,7 +7,7 @@
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
 #include "host/reference/flow.hpp"
-#include "host/spectrum/paper_tables.hpp"
+#include "host/paper/surface_tables.hpp"
 #include "host/spectrum/power.hpp"
 #include "host/spectrum/surface_fields.hpp"
 #include "host/sphere_directions.hpp"

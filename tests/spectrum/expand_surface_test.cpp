@@ -5,7 +5,7 @@
 #include "host/map/smooth.hpp"
 #include "host/map/stretch.hpp"
 #include "host/mesh/builtin.hpp"
-#include "host/spectrum/paper_tables.hpp"
+#include "host/paper/surface_tables.hpp"
 #include "host/spectrum/rotation.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/meshes.hpp"
