@@ -20,7 +20,8 @@ struct Options {
   bool without_sign = false, json = false, dry_run = false;
 };
 
-void write_plan(const DistancePlan& plan, const MemoryNeed& need, const Backend& backend) {
+void write_plan(const DistancePlan& plan, const Backend& backend) {
+  const MemoryNeed need = plan.memory(backend);
   const DistanceResult& empty = plan.result;
   write_stdout(fmt::format("plan: {} distances of {} points from {} triangles\n",
                            empty.with_sign ? "signed" : "unsigned", plan.count, empty.mesh.faces.size()));
@@ -63,10 +64,9 @@ void run(const Options& options, const Common& common) {
   const double open_seconds = seconds_since(start);
   if (!note.empty()) plan.result.notes.push_back(note);
   if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
-  const MemoryNeed need = plan.memory(*backend);
-  check_memory(need, *backend, options.grid ? "lower --grid" : "pass fewer points at once");
   if (options.dry_run) {
-    write_plan(plan, need, *backend);
+    check_distance_memory(plan, *backend);
+    write_plan(plan, *backend);
     return;
   }
   DistanceResult result = find_distances(std::move(plan), *backend, monitor);

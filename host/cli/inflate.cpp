@@ -3,7 +3,7 @@
 #include "host/cli/drawing.hpp"
 #include "host/cli/mend_options.hpp"
 #include "host/cli/surface_outputs.hpp"
-#include "host/requests/picture.hpp"
+#include "host/requests/render.hpp"
 
 #include "host/error.hpp"
 #include "host/io/png.hpp"
@@ -90,7 +90,6 @@ void run(const Options& options, const Common& common) {
   std::string note;
   const auto backend = open_backend(common, &note);
   if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
-  check_memory(inflate_memory(request, *backend), *backend, "lower --cells");
   const std::string name = request.mesh.name, sha256 = request.mesh.sha256;
   std::size_t number = 0;
   InflateResult result = inflate(std::move(request), *backend, monitor, [&](InflatedBody& body) {

@@ -8,7 +8,7 @@
 #include "host/physics/potential.hpp"
 #include "host/report/findings_report.hpp"
 #include "host/report/json_parts.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "host/units.hpp"
 
 #include <fmt/format.h>

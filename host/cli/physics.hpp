@@ -57,7 +57,7 @@ PlacedTensors metric_tensors(const PhysicsInput& input, const PhysicsOptions& op
 physics::MassiveBody massive_body(const PhysicsInput& input, const PlacedTensors& placed, int order);
 /// An input's moments about its origin, in SI where units are stated.
 struct PlacedMoments {
-  Coefficients moments;
+  Multipoles moments;
   bool metric = false;
   double metres = 1;        ///< that a file's unit of length was turned into
   bool radius_known = true; ///< the moments are over the sphere that holds the body; else over the file's own radius

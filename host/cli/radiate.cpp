@@ -4,7 +4,7 @@
 #include "host/error.hpp"
 #include "host/physics/paper.hpp"
 #include "host/physics/radiate.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "host/units.hpp"
 
 #include <Eigen/Geometry>
@@ -83,7 +83,7 @@ struct Radiation {
 double by_multipoles(const PhysicsInput& input, const MassTensors& tensors, const Vec3& axis) {
   if (!input.body) return quadrupole_square(spherical_quadrupole(tensors.quadrupole), axis);
   Monitor monitor;
-  const Coefficients q = mass_moments(mass_problems(*input.body, 2, 0), *make_cpu_backend(1), monitor);
+  const Multipoles q = mass_moments(mass_problems(*input.body, 2, 0), *make_cpu_backend(1), monitor);
   const double r2 = q.reference_radius * q.reference_radius;
   return quadrupole_square(std::array{r2 * q(2, 0), r2 * q(2, 1), r2 * q(2, 2)}, axis);
 }

@@ -4,14 +4,14 @@
 #include "host/error.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 namespace cowgpu::physics {
 
-MassiveBody massive_body(const MassTensors& tensors, Coefficients moments, int order) {
+MassiveBody massive_body(const MassTensors& tensors, Multipoles moments, int order) {
   MassiveBody body;
   body.mass = tensors.mass;
   body.inertia = tensors.inertia();
@@ -22,7 +22,7 @@ MassiveBody massive_body(const MassTensors& tensors, Coefficients moments, int o
   check_weighs(tensors);
   if (order < 3) return body;
   for (int l = 0; l <= 2; ++l)
-    for (int m = 0; m <= l; ++m) moments.values[Coefficients::index(l, m)] = 0;
+    for (int m = 0; m <= l; ++m) moments(l, m) = 0;
   body.higher = std::make_shared<const reference::ExteriorPotential<long double>>(moments, order);
   return body;
 }

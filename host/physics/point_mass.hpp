@@ -1,9 +1,9 @@
 // The pull of a point mass on a body: force and torque from its multipoles about its centre of mass.
 #pragma once
 
-#include "host/coefficients.hpp"
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
+#include "host/multipoles.hpp"
 #include "host/physics/tensors.hpp"
 
 #include <Eigen/Core>
@@ -49,7 +49,7 @@ struct MassiveBody {
 
 /// Degrees 3 and more of `moments`, in kg m^l, and what else is in `tensors`, about the centre of mass in SI. Throws
 /// Error(file_format) without a second moment, Error(bad_argument) for a mass or a moment of inertia that is not above 0.
-MassiveBody massive_body(const MassTensors& tensors, Coefficients moments, int order);
+MassiveBody massive_body(const MassTensors& tensors, Multipoles moments, int order);
 
 /// Of a mesh in metres and kilograms about its centre of mass, with exact moments to `order` >= 2. Throws
 /// Error(bad_argument) for a body without mass.

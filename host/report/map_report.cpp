@@ -106,7 +106,7 @@ void write_screen(const MapResult& result, const Sink& sink) {
   const RawMesh& mesh = result.surface.closed().mesh();
   sink(mesh_line(mesh) + "\n");
   for (const std::string& note : result.notes) sink("note: " + note + "\n");
-  sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", result.map.method, result.map_seconds,
+  sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", name(result.map.method), result.map_seconds,
                    result.judge_seconds));
   for (const std::string& note : result.map.notes) sink("note: " + note + "\n");
   if (result.flow) {
@@ -152,7 +152,7 @@ void write_json(const MapResult& result, const std::vector<std::string>& command
         {"sha256", mesh.sha256},
         {"vertices", mesh.vertices.size()},
         {"faces", mesh.faces.size()}}},
-      {"method", result.map.method},
+      {"method", name(result.map.method)},
       {"notes", notes},
       {"output", result.output.empty() ? ordered_json() : ordered_json(result.output)},
       {"quality", quality_json(result.quality)},

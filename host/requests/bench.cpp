@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/mesh/body.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "host/spectrum/verify.hpp"
 
 #include <fmt/format.h>

@@ -4,6 +4,7 @@
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/winding_notes.hpp"
+#include "host/requests/memory.hpp"
 
 namespace cowgpu {
 
@@ -36,9 +37,14 @@ MemoryNeed DistancePlan::memory(const Backend& backend) const {
   return need;
 }
 
+void check_distance_memory(const DistancePlan& plan, const Backend& backend) {
+  check_memory(plan.memory(backend), backend, plan.result.lattice ? "lower --grid" : "pass fewer points at once");
+}
+
 DistanceResult find_distances(DistancePlan plan, Backend& backend, Monitor& monitor) {
   const auto start = Clock::now();
   DistanceResult& result = plan.result;
+  check_distance_memory(plan, backend);
   result.device = backend.facts();
   if (result.lattice) result.queries = result.lattice->points();
   const auto field = backend.distance_field(result.mesh.vertices, result.mesh.faces);

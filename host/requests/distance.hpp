@@ -30,7 +30,10 @@ struct DistancePlan {
   MemoryNeed memory(const Backend& backend) const;
 };
 
-/// Throws what DistanceField throws.
+/// Throws Error(too_large) where this machine has less memory than that.
+void check_distance_memory(const DistancePlan& plan, const Backend& backend);
+
+/// Throws the same, and what DistanceField throws.
 DistanceResult find_distances(DistancePlan plan, Backend& backend, Monitor& monitor);
 
 } // namespace cowgpu

@@ -4,6 +4,7 @@
 #include "host/error.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/requests/expand_flow.hpp"
+#include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
 
@@ -80,6 +81,7 @@ MemoryNeed inflate_memory(const InflateRequest& request, const Backend& backend)
 
 InflateResult inflate(InflateRequest request, Backend& backend, Monitor& monitor,
                       const std::function<void(InflatedBody&)>& done) {
+  check_memory(inflate_memory(request, backend), backend, "lower --cells");
   InflateResult result{make_body(ClosedSurface::from(std::move(request.mesh)), request.origin, 1), backend.facts()};
   const Body& body = result.body;
   result.notes = body_notes(body.surface, monitor, request.threads);

@@ -26,7 +26,7 @@ MemoryNeed inflate_memory(const InflateRequest& request, const Backend& backend)
 
 /// Inflates, level by level; `done` gets each body as soon as it is there, and may name it. Throws what ClosedSurface::from() and make_body()
 /// throw for the mesh, Error(bad_argument) for a level out of its range and for a star-shaped body's least distance as a
-/// level, and what star_shape_time() and level_surface() throw.
+/// level, too_large, and what star_shape_time() and level_surface() throw.
 InflateResult inflate(InflateRequest request, Backend& backend, Monitor& monitor,
                       const std::function<void(InflatedBody&)>& done = {});
 

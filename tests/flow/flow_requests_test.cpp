@@ -1,5 +1,5 @@
 #include "host/requests/inflate.hpp"
-#include "host/requests/picture.hpp"
+#include "host/requests/render.hpp"
 #include "host/requests/streamlines.hpp"
 
 #include "host/error.hpp"

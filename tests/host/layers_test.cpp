@@ -38,7 +38,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
       "host/paper"}},
     {"host/requests",
      {"host/backend", "host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics",
-      "host/report", "host/figures", "host/plot", "host/reproduce", "host/paper"}},
+      "host/plan", "host/report", "host/figures", "host/plot", "host/reproduce", "host/paper"}},
     {"host/reproduce", {"host", "host/io", "host/report", "host/paper"}},
     {"host/cli",
      {"host/backend", "host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics",
