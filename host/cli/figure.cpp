@@ -135,7 +135,7 @@ private:
   // A ball of the body's volume on the left, the body on the right.
   plot::Canvas tipping() {
     using namespace physics;
-    const TipBody cow = tip_body(body_);
+    const RigidBody cow = tip_body(body_);
     const Stance stance = stand(cow, {}), ball = stand(ball_like(cow, body_.mass()), {.as_modelled = true});
     const Tipping of_cow = physics::tipping(stance, Side::right), of_ball = physics::tipping(ball, Side::right);
     const std::array shown = {figures::TippedBody{&ball, &of_ball, "spherical body"},

@@ -43,7 +43,7 @@ struct Stood {
   const Tipping& chosen() const { return side == Side::left ? left : right; }
 };
 
-Stood stand_up(TipBody body, const StandOptions& how, const std::string& side, const Monitor& monitor) {
+Stood stand_up(RigidBody body, const StandOptions& how, const std::string& side, const Monitor& monitor) {
   Stood stood;
   stood.stance = stand(std::move(body), how, monitor);
   stood.left = tipping(stood.stance, Side::left);
@@ -59,11 +59,11 @@ StandOptions stand_options(const Options& options, const TipInput& input) {
   const Measure tolerance = parse_measure("--contact-tolerance", options.tolerance, Dimension::length);
   if (!(tolerance.value >= 0))
     throw Error(Fault::bad_argument, fmt::format("--contact-tolerance {}: it must not be below 0", options.tolerance));
-  if (tolerance.has_unit && !input.metric)
+  if (tolerance.has_unit && !input.full.units.stated)
     throw Error(Fault::bad_argument, fmt::format("--contact-tolerance {}: a length with a unit needs the mesh's: add "
                                                  "--length-unit or --length",
                                                  options.tolerance));
-  how.contact_tolerance = tolerance.value * (tolerance.has_unit ? 1 : input.unit);
+  how.contact_tolerance = tolerance.value * (tolerance.has_unit ? 1 : input.full.units.metre);
   return how;
 }
 
@@ -136,9 +136,10 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
     if (order == 0) standing.as_modelled = true; // a ball stands in any attitude, but on facets of its triangulation
     try {
       std::string note;
-      TipBody body = order_body(input, options.choice, order, monitor, note);
+      RigidBody body = order_body(input, options.choice, order, monitor, note);
       const Stood stood = stand_up(std::move(body), standing, options.side, monitor);
-      table.rows.push_back(order_row(double(order), stood, options.gravity, input.metric, order_note(stood, note)));
+      table.rows.push_back(
+          order_row(double(order), stood, options.gravity, input.full.units.stated, order_note(stood, note)));
     } catch (const Error& error) {
       if (error.fault() != Fault::cannot_stand && error.fault() != Fault::mesh_no_volume &&
           error.fault() != Fault::mesh_not_finite)
@@ -150,7 +151,7 @@ Table orders_table(const TipInput& input, const Options& options, const StandOpt
       table.rows.push_back(std::move(row));
     }
   }
-  table.rows.push_back(order_row(std::string("full"), full, options.gravity, input.metric,
+  table.rows.push_back(order_row(std::string("full"), full, options.gravity, input.full.units.stated,
                                  order_note(full, input.full_is == "the mesh" ? "" : input.full_is)));
   return table;
 }
@@ -183,8 +184,8 @@ Table patch_table(const Stance& stance, const std::string& length) {
 void add_force_rows(const Stood& stood, const TipInput& input, const Options& options, Findings& found) {
   const Stance& stance = stood.stance;
   const Tipping& t = stood.chosen();
-  const std::string length = input.metric ? "m" : "mesh units";
-  const Weight weight{stance.body.mass * options.gravity, input.metric};
+  const std::string length = input.full.units.stated ? "m" : "mesh units";
+  const Weight weight{stance.body.mass * options.gravity, input.full.units.stated};
   found.rows = {
       {"body", "body", input.full_is},
       {"attitude", "attitude", std::string(options.as_modelled ? "as modelled" : "settled")},
@@ -192,10 +193,10 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
       {"settle_rolls", "rolls until it rests", double(stance.attitude.rolls.size())},
       {"support_points", "vertices that touch the ground", double(stance.contact.support.size())},
       {"over_patch", "barycentre over the contact patch", !stance.held},
-      {"mass_kg", "mass", input.metric ? Value(stance.body.mass) : Value(), "kg"},
+      {"mass_kg", "mass", input.full.units.stated ? Value(stance.body.mass) : Value(), "kg"},
       {"gravity", "gravity", options.gravity, "m/s^2"},
       {"weight_N", "weight", weight.of(1), "N"},
-      {"barycentre", "barycentre", stance.body.barycentre, length},
+      {"barycentre", "barycentre", stance.body.centre, length},
       {"side", "side that it falls to", name(t.side)},
       {"pivot", "pivot", t.pivot, length},
       {"point", "point of the push", t.point, length},
@@ -205,7 +206,7 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
       {"force_over_weight_paper_balance", "paper's balance: force over the weight", t.force_paper_balance},
       {"force_N_paper_balance", "paper's balance, about the barycentre", weight.of(t.force_paper_balance), "N"},
       {"force_N_paper_literal", "paper's balance, its arm in space", weight.of(t.force_paper_literal), "N",
-       input.metric ? "none: its ray meets no surface" : "not known"},
+       input.full.units.stated ? "none: its ray meets no surface" : "not known"},
       {"force_left_N", "force to begin, to the left", weight.of(stood.left.force), "N"},
       {"force_right_N", "force to begin, to the right", weight.of(stood.right.force), "N"},
       {"friction_needed", "friction coefficient not to slip", t.friction_needed},
@@ -222,7 +223,7 @@ void add_force_rows(const Stood& stood, const TipInput& input, const Options& op
 bool narrow(const Stance& stance) {
   double across = 0;
   for (const Vec3& p : stance.contact.patch) across = std::max(across, (p - stance.contact.patch.front()).norm());
-  return across < 0.05 * (stance.body.barycentre.y() - stance.contact.ground);
+  return across < 0.05 * (stance.body.centre.y() - stance.contact.ground);
 }
 
 std::string counted(std::size_t count, const char* what) {
@@ -246,7 +247,7 @@ std::string settled_note(const Attitude& attitude) {
 
 void add_notes(const Stood& stood, const TipInput& input, const Options& options, Findings& found) {
   const Stance& stance = stood.stance;
-  if (!input.metric)
+  if (!input.full.units.stated)
     found.notes.push_back("no unit of length was stated: forces are in units of the body's weight; --length or "
                           "--length-unit, with --density, make them newtons");
   if (!options.as_modelled && stance.attitude.angle == 0)
@@ -293,10 +294,10 @@ std::vector<Comparison> beside_paper(const TipInput& input, const Options& optio
   add("settled, N", t.force * weight);
   add("settled, its balance, N", t.force_paper_balance * weight);
   if (t.force_paper_literal) add("settled, its arm in space, N", *t.force_paper_literal * weight);
-  if (input.head.input_sha256 != benchmark_sha256) return rows;
+  if (input.head.sha256 != benchmark_sha256) return rows;
   for (const auto& [what, tolerance] :
        {std::pair("hind hooves' tips", 0.0), std::pair("hind hooves", 0.005), std::pair("all hooves", 0.01)}) {
-    const Stood modelled = stand_up(input.full, {true, tolerance * input.unit}, "weaker", monitor);
+    const Stood modelled = stand_up(input.full, {true, tolerance * input.full.units.metre}, "weaker", monitor);
     add(fmt::format("as modelled, {}, N", what), modelled.chosen().force * weight);
   }
   return rows;
@@ -313,22 +314,22 @@ void check_gravity(double gravity) {
 
 void check_weight(const TipInput& input, double gravity) {
   const double weight = input.full.mass * gravity;
-  if (input.metric && !(weight >= least_weight && weight <= largest_weight))
+  if (input.full.units.stated && !(weight >= least_weight && weight <= largest_weight))
     throw Error(Fault::bad_argument,
                 fmt::format("the body weighs {:.3g} N: a push can be followed from {:g} N to {:g} N; look at --length, "
                             "--length-unit and --density",
                             weight, least_weight, largest_weight));
 }
 
-Findings solve(const PhysicsOptions& common, const Options& options, const Common& program) {
+Findings solve(const PhysicsCall& common, const Options& options, const Common& program) {
   check_gravity(options.gravity);
   const PushPlan plan = plan_push(options.push);
   if (!options.plot.empty()) {
     check_tip_plot(options.plot);
     for (const std::string& file : input_files(common.body)) refuse_mesh_as_output(file, options.plot);
   }
-  TipInput input = load_tip_input(common, options.choice, program);
-  if (!input.metric && (plan.profile || plan.punch_duration || !options.plot.empty()))
+  TipInput input = load_tip_input(common.body, options.choice, program);
+  if (!input.full.units.stated && (plan.profile || plan.punch_duration || !options.plot.empty()))
     throw Error(Fault::bad_argument,
                 "--push, --punch-duration and --plot are about newtons and seconds: add --length, how long "
                 "the body is, or --length-unit, and its --density");
@@ -337,14 +338,14 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
   input.full.smooth = input.full.smooth || options.smooth;
   ConsoleMonitor monitor(program.style());
   const Stood stood = stand_up(input.full, how, options.side, monitor);
-  Findings found = input.head;
+  Findings found(input.head);
   add_notes(stood, input, options, found);
   add_force_rows(stood, input, options, found);
-  const std::string length = input.metric ? "m" : "mesh units";
+  const std::string length = input.full.units.stated ? "m" : "mesh units";
   std::optional<double> friction;
   if (options.friction >= 0) friction = options.friction;
   const Rocker body = rocker(stood.stance.body, stood.chosen(), options.gravity, plan.turns_with_body);
-  if (input.metric) add_push_findings(body, options.push, plan, friction, monitor, found);
+  if (input.full.units.stated) add_push_findings(body, options.push, plan, friction, monitor, found);
   if (!options.plot.empty() && !(body.balance > 0))
     throw Error(Fault::bad_argument, "--plot: any push tips this body, so there is no boundary to draw");
   found.tables.insert(found.tables.begin(), patch_table(stood.stance, length));
@@ -352,7 +353,7 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
     found.tables.insert(found.tables.begin(), rolls_table(stood.stance.attitude, length));
   found.tables.push_back(orders_table(input, options, how, stood, length, monitor));
   monitor.clear();
-  if (common.paper()) {
+  if (common.paper) {
     const Stood settled = options.as_modelled ? stand_up(input.full, {}, options.side, monitor) : stood;
     found.paper = beside_paper(input, options, settled, monitor);
   }
@@ -366,7 +367,7 @@ Findings solve(const PhysicsOptions& common, const Options& options, const Commo
 
 } // namespace
 
-Solve add_tip(Command& command, Common& common) {
+Solve add_tip(Command& command, Common& common, BodyOptions&) {
   const auto options = std::make_shared<Options>();
   command.get_option("mesh")->description(
       "Coefficients of its surface (FILE of `cowgpu expand --of stretch`), or a mesh: " + mesh_help());
@@ -426,7 +427,7 @@ Solve add_tip(Command& command, Common& common) {
       ->type_name("FILE")
       ->check(not_empty());
   add_common_options(command, common);
-  return [options, &common](const PhysicsOptions& physics) { return solve(physics, *options, common); };
+  return [options, &common](const PhysicsCall& call) { return solve(call, *options, common); };
 }
 
 } // namespace cowgpu::cli

@@ -106,16 +106,23 @@ void check_orders(const TipInput& input, const TipChoice& choice, const std::str
                "lower --order or --resolution");
 }
 
-void from_coefficients(const PhysicsOptions& options, const TipChoice& choice, TipInput& input, Monitor& monitor) {
-  const std::string& file = options.body.mesh;
-  refuse_placing(options.body);
+TriangleSurface order_surface(const TipInput& input, const TipChoice& choice, int order, Monitor& monitor) {
+  const SphereGrid grid = make_grid(GridKind::clenshaw_curtis, resolution_of(choice, order));
+  TriangleSurface surface = reconstruct(*input.expansion, input.fields, order, grid, *input.backend, monitor);
+  surface.name = fmt::format("order {}", order);
+  return surface;
+}
+
+void from_coefficients(const BodyRequest& request, const TipChoice& choice, TipInput& input, Monitor& monitor) {
+  const std::string& file = request.mesh;
+  refuse_placing(request);
   if (choice.lmax >= 0)
     throw Error(Fault::bad_argument, fmt::format("--lmax is for meshes: {} holds an expansion already", file));
   bool metric = false;
   SurfaceSource source;
   if (holds_expansions(file)) {
     source = load_surface({file, choice.of, choice.mesh, -1}, 0, *input.backend, monitor);
-    metric = source.placement.metric;
+    metric = source.placement.units.stated;
   } else {
     if (!choice.mesh.empty())
       throw Error(Fault::bad_argument, fmt::format("--mesh: only the JSON of `cowgpu expand` says how its mesh was "
@@ -123,50 +130,45 @@ void from_coefficients(const PhysicsOptions& options, const TipChoice& choice, T
                                                    file));
     source = source_of_set(file, choice.of, metric);
   }
-  BodyOptions units = options.body;
-  if (metric && !units.length_unit.empty())
+  if (metric && request.length_unit)
     throw Error(Fault::bad_argument, fmt::format("--length-unit: {} is in metres already", file));
-  if (metric) units.length_unit = "1m";
-  const StatedUnits stated = stated_units(units);
-  if (!(stated.density > 0))
+  const double density = request.density.value_or(1), metre = request.length_unit.value_or(1);
+  if (!(density > 0))
     throw Error(Fault::bad_argument,
-                fmt::format("--density {}: the body weighs nothing or less; it must be above 0", options.body.density));
-  input.metric = stated.metric;
-  input.unit = stated.metres;
-  scale(source.expansion, stated.metres);
-  input.head.title =
-      fmt::format("coefficients {}, surface {} to degree {}", file, source.name, source.expansion.coefficients.lmax);
-  input.head.input_kind = "coefficients";
-  input.head.input_name = file;
-  input.head.notes = source.notes;
-  note_density(options, input.metric, input.head.notes);
+                fmt::format("--density {}: the body weighs nothing or less; it must be above 0", density));
+  const bool stated = metric || request.length_unit;
+  const Units units{metre, stated ? density * metre * metre * metre : 1, stated};
+  scale(source.expansion, metre);
+  input.head = {
+      fmt::format("coefficients {}, surface {} to degree {}", file, source.name, source.expansion.coefficients.lmax),
+      "coefficients", file, "", source.notes};
+  if (const std::string note = density_note(request, units); !note.empty()) input.head.notes.push_back(note);
   input.expansion = std::move(source.expansion);
   input.expansion_name = source.name;
   check_orders(input, choice, file);
   if (source.body) {
     const Body& body = *source.body;
     RawMesh mesh = body.surface.mesh();
-    for (Vec3& v : mesh.vertices) v *= stated.metres;
-    input.full = tip_body(make_body(ClosedSurface::from(std::move(mesh)), {}, stated.density));
+    for (Vec3& v : mesh.vertices) v *= metre;
+    input.full = solid_body(make_body(ClosedSurface::from(std::move(mesh)), {}, density));
+    input.full.units = units;
     input.full_is = "the mesh " + choice.mesh;
     return;
   }
   const int lmax = input.expansion->coefficients.lmax;
   check_memory(rebuild_memory(lmax, resolution_of(choice, lmax), *input.backend), *input.backend,
                "lower --resolution, or name the body with --mesh");
-  input.full.mass = 1;
+  const TriangleSurface surface = order_surface(input, choice, lmax, monitor);
   std::string note;
-  input.full = order_body(input, choice, lmax, monitor, note);
-  const double density = input.full.mass / volume(input.full.vertices, input.full.faces);
-  input.full.mass *= stated.density / density;
-  input.full.inertia *= stated.density / density;
+  input.full = smooth_body(surface, density * std::abs(volume(surface.vertices, surface.faces)), note);
+  input.full.units = units;
   input.full_is = fmt::format("order {}, the last of the file: --mesh names the true body", lmax);
 }
 
-void from_mesh(const PhysicsOptions& options, const TipChoice& choice, TipInput& input, const Common& common,
+void from_mesh(const BodyRequest& request, const TipChoice& choice, TipInput& input, const Common& common,
                Monitor& monitor) {
   if (!choice.mesh.empty())
-    throw Error(Fault::bad_argument, fmt::format("--mesh is for coefficients: {} is a mesh", options.body.mesh));
+    throw Error(Fault::bad_argument, fmt::format("--mesh is for coefficients: {} is a mesh", request.mesh));
   if (input.orders.empty() && (!choice.of.empty() || choice.lmax >= 0 || choice.resolution > 0))
     throw Error(Fault::bad_argument, "--of, --lmax and --resolution are about orders of the expansion; add --order");
   const int largest = input.orders.empty() ? 0 : *std::max_element(input.orders.begin(), input.orders.end());
@@ -180,16 +182,14 @@ void from_mesh(const PhysicsOptions& options, const TipChoice& choice, TipInput&
       throw Error(Fault::bad_argument,
                   fmt::format("--of {}: a body is rebuilt over one map: harmonic, stretch, smooth or flow", choice.of));
   }
-  PhysicsInput loaded = load_input(options);
-  input.head = findings_about(loaded, options);
-  const Body& body = *loaded.body;
-  input.full = tip_body(body);
+  const LoadedMass loaded = load_mass(request, Motion::held, monitor);
+  input.head = subject(loaded);
+  const Body& body = *loaded.mesh;
+  input.full = solid_body(body);
   input.full_is = "the mesh";
   if (std::any_of(body.parts.begin(), body.parts.end(), [](const Part& part) { return part.density < 0; }))
     input.head.notes.push_back(
         "parts of negative density are holes: the body neither stands on them nor is pushed at them");
-  input.metric = body.placement.metric;
-  input.unit = body.placement.scale;
   if (input.orders.empty()) return;
   std::string note;
   input.backend = open_backend(common, &note);
@@ -203,43 +203,40 @@ void from_mesh(const PhysicsOptions& options, const TipChoice& choice, TipInput&
   for (const std::string& sentence : result.quality.sentences) input.head.notes.push_back("map: " + sentence);
   if (!body.parts.empty())
     input.head.notes.push_back("orders are of the outer surface, uniform, with the mass of all parts");
-  check_orders(input, choice, options.body.mesh);
+  check_orders(input, choice, request.mesh);
 }
 
 } // namespace
 
-TipInput load_tip_input(const PhysicsOptions& options, const TipChoice& choice, const Common& common) {
+TipInput load_tip_input(const BodyRequest& request, const TipChoice& choice, const Common& common) {
   TipInput input;
   input.fields = parse_fields(choice.fields);
   for (const int order : parse_orders(choice.orders, "full"))
     if (order != whole_mesh) input.orders.push_back(order);
   ConsoleMonitor monitor(common.style());
-  if (!is_coefficient_file(options.body.mesh)) {
-    from_mesh(options, choice, input, common, monitor);
+  if (!is_coefficient_file(request.mesh)) {
+    from_mesh(request, choice, input, common, monitor);
     return input;
   }
   std::string note;
   input.backend = open_backend(common, &note);
-  from_coefficients(options, choice, input, monitor);
+  from_coefficients(request, choice, input, monitor);
   if (!note.empty()) input.head.notes.push_back(note);
   return input;
 }
 
-TipBody order_body(const TipInput& input, const TipChoice& choice, int order, Monitor& monitor, std::string& note) {
-  const SphereGrid grid = make_grid(GridKind::clenshaw_curtis, resolution_of(choice, order));
-  TriangleSurface surface = reconstruct(*input.expansion, input.fields, order, grid, *input.backend, monitor);
-  surface.name = fmt::format("order {}", order);
-  return tip_body(surface, input.full.mass, note);
+RigidBody order_body(const TipInput& input, const TipChoice& choice, int order, Monitor& monitor, std::string& note) {
+  return smooth_body(order_surface(input, choice, order, monitor), input.full.mass, note);
 }
 
-TipBody ball_like(const TipBody& body, double volume) {
+RigidBody ball_like(const RigidBody& body, double volume) {
   const SphereTriangulation sphere = icosphere(4);
   const double radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
   TriangleSurface ball;
   ball.faces = sphere.faces;
-  for (const Vec3& direction : sphere.directions) ball.vertices.emplace_back(body.barycentre + radius * direction);
+  for (const Vec3& direction : sphere.directions) ball.vertices.emplace_back(body.centre + radius * direction);
   std::string note;
-  return tip_body(ball, body.mass, note);
+  return smooth_body(ball, body.mass, note);
 }
 
 } // namespace cowgpu::cli

@@ -24,11 +24,9 @@ struct TipChoice {
 };
 
 struct TipInput {
-  physics::Findings head; ///< title, input and notes
-  physics::TipBody full;  ///< metres and kilograms where metric
-  std::string full_is;    ///< "the mesh", or which order stands for it
-  bool metric = false;
-  double unit = 1;         ///< metres of the body's own unit; 1 where not metric
+  physics::Subject head;
+  physics::RigidBody full; ///< with its surface; metres and kilograms where metric
+  std::string full_is;     ///< "the mesh", or which order stands for it
   std::vector<int> orders; ///< to rebuild
   SurfaceFields fields = SurfaceFields::xyz;
   std::optional<SurfaceExpansion> expansion; ///< in the units of `full`
@@ -38,13 +36,13 @@ struct TipInput {
 
 /// Reads the body and, where orders are asked for or coefficients are given, its surface's expansion. Throws what
 /// load_body(), load_surface() and read_coefficient_set() throw, and Error(file_format) for coefficients of a mass.
-TipInput load_tip_input(const PhysicsOptions& options, const TipChoice& choice, const Common& common);
+TipInput load_tip_input(const BodyRequest& request, const TipChoice& choice, const Common& common);
 
-/// The body of an order, with the mass of the whole. Throws what reconstruct() and tip_body() throw.
-physics::TipBody order_body(const TipInput& input, const TipChoice& choice, int order, Monitor& monitor,
-                            std::string& note);
+/// The body of an order, with the mass of the whole. Throws what reconstruct() and smooth_body() throw.
+physics::RigidBody order_body(const TipInput& input, const TipChoice& choice, int order, Monitor& monitor,
+                              std::string& note);
 
 /// A ball with this barycentre and mass, smooth, standing on one of its vertices as modelled.
-physics::TipBody ball_like(const physics::TipBody& body, double volume);
+physics::RigidBody ball_like(const physics::RigidBody& body, double volume);
 
 } // namespace cowgpu::cli

@@ -184,7 +184,7 @@ PushPlan plan_push(const PushOptions& options) {
   return plan;
 }
 
-Rocker rocker(const TipBody& body, const Tipping& tipping, double gravity, bool turns_with_body) {
+Rocker rocker(const RigidBody& body, const Tipping& tipping, double gravity, bool turns_with_body) {
   return {body.mass, gravity, tipping.inertia, tipping.radius, tipping.balance_angle(), tipping.lever, turns_with_body};
 }
 

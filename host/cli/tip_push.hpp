@@ -34,7 +34,7 @@ struct PushPlan {
 PushPlan plan_push(const PushOptions& options);
 
 /// Of a body in SI units.
-physics::Rocker rocker(const physics::TipBody& body, const physics::Tipping& tipping, double gravity,
+physics::Rocker rocker(const physics::RigidBody& body, const physics::Tipping& tipping, double gravity,
                        bool turns_with_body);
 
 /// Rows, notes and the table `boundary`. `friction`: the coefficient, where it is given.

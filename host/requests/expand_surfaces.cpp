@@ -34,7 +34,7 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
   result.name = method;
   result.beside_paper =
       paper && choice.lmax >= 3 && body.surface.mesh().sha256 == benchmark_sha256 && body.placement.is_identity();
-  if (body.placement.metric) result.length_unit = "metres";
+  if (body.units().stated) result.length_unit = "metres";
   const Vec3 origin = paper ? Vec3::Zero() : body.origin;
   const int judged_degree = surface_grid_degree(choice.lmax) / 2;
   if (method == "flow") {
