@@ -106,7 +106,7 @@ std::vector<Vec3> chosen(const std::vector<Vec3>& points, const std::vector<std:
 // Where the sphere that holds the body is not known the sum of the file's terms is the field that it describes, below its
 // reference radius too, as on the ground of a planet. The moments, over the distance of the nearest point. Refuses places
 // where the terms grow with their degree, which no field does outside of its body.
-Coefficients continued_down(const Coefficients& moments, const Solved& s) {
+Multipoles continued_down(const Multipoles& moments, const Solved& s) {
   std::size_t nearest = 0, below = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < s.places.points.size(); ++i) {
@@ -130,7 +130,7 @@ Coefficients continued_down(const Coefficients& moments, const Solved& s) {
   return over_radius(moments, least);
 }
 
-void compute(const LoadedMass& input, const Options& options, const Coefficients& moments, Backend& backend,
+void compute(const LoadedMass& input, const Options& options, const Multipoles& moments, Backend& backend,
              unsigned threads, Monitor& monitor, Solved& s) {
   const auto derivatives = Derivatives(options.derivatives);
   const std::size_t count = s.places.points.size();
@@ -152,7 +152,7 @@ void compute(const LoadedMass& input, const Options& options, const Coefficients
   s.field.value.resize(count);
   if (derivatives != Derivatives::none) s.field.gradient.resize(count);
   if (derivatives == Derivatives::second) s.field.hessian.resize(count);
-  const Coefficients reach = s.radius_known ? moments : continued_down(moments, s);
+  const Multipoles reach = s.radius_known ? moments : continued_down(moments, s);
   if (!outside.empty())
     take(backend.potential({reach, chosen(s.places.points, outside, s.frame.origin), s.lmax, derivatives}, monitor),
          outside, s.field);
@@ -394,7 +394,7 @@ Findings solve(const PhysicsCall& call, const Options& options, const Common& co
 
   Solved s;
   s.lmax = options.exact ? 0 : degree_wanted(input, options);
-  const Coefficients own = moments(input, s.lmax, *backend, monitor);
+  const Multipoles own = moments(input, s.lmax, *backend, monitor);
   const bool si = input.units.stated;
   s.units = units_of(si, call.body.charge);
   s.frame = {own.origin, own.reference_radius, si};

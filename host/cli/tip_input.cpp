@@ -2,7 +2,6 @@
 
 #include "host/cli/expansion_words.hpp"
 #include "host/cli/order_list.hpp"
-#include "host/cli/surface_source.hpp"
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
@@ -12,6 +11,7 @@
 #include "host/requests/expand_surfaces.hpp"
 #include "host/spectrum/convert.hpp"
 #include "host/spectrum/expand_surface.hpp"
+#include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -198,7 +198,7 @@ void from_mesh(const BodyRequest& request, const TipChoice& choice, TipInput& in
   std::vector<SurfaceResult> results = expand_surfaces(maps, false, body, *input.backend, monitor);
   check_surfaces(results);
   SurfaceResult result = std::move(results.front());
-  input.expansion_name = result.name;
+  input.expansion_name = name(result.of);
   input.expansion = std::move(result.expansion);
   for (const std::string& sentence : result.quality.sentences) input.head.notes.push_back("map: " + sentence);
   if (!body.parts.empty())

@@ -1,5 +1,6 @@
 #include "host/io/result_json.hpp"
 
+#include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 #include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
@@ -139,12 +140,12 @@ const json& expansion(const std::string& name, const json& result, const std::st
     throw Error(Fault::bad_argument, fmt::format("--of {}: {} has no such expansion; there is {}", of, name,
                                                  there.empty() ? "none" : there));
   }
-  if (expansions.is_object() && !expansions.empty() && !expansions.contains("mass"))
+  if (expansions.is_object() && !expansions.empty() && !expansions.contains(mass_expansion))
     throw Error(Fault::file_format,
                 fmt::format("{}: this file holds surfaces and no mass moments; `cowgpu expand --of ... -o FILE.csv` "
                             "writes the coefficients of surfaces so that they can be read here",
                             name));
-  return member(name, expansions, "mass");
+  return member(name, expansions, mass_expansion);
 }
 
 SphereCoefficients coefficients(const std::string& name, const json& expansion, int fields, int largest) {

@@ -47,10 +47,8 @@ double spherical_factor(const Eigen::Matrix3d& tensor) {
 
 // Integral of |Y_22|^2 over the sphere: Y_22 is what a moment Q_22 alone makes of the potential at r = 1.
 double norm_of_y22() {
-  Coefficients only;
-  only.lmax = 2;
-  only.values.resize(Coefficients::count(2));
-  only.values[Coefficients::index(2, 2)] = 1;
+  Multipoles only(2);
+  only(2, 2) = 1;
   const reference::ExteriorPotential<double> real_part(only);
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, 8);
   double sum = 0;
@@ -77,7 +75,7 @@ Vec3 pivot(const Body& body) {
 
 std::vector<ErratumNumber> errata_numbers() {
   const double square = quadrupole_square(paper_quadrupole(), Vec3::UnitY()) * unit * unit;
-  Coefficients monopole;
+  Multipoles monopole;
   monopole.values = {1 / std::sqrt(4 * pi)};
   const double far = reference::ExteriorPotential<double>(monopole)(Vec3(3, 4, 12)).value * 13;
   int degree = 0;

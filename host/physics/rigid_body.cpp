@@ -5,7 +5,7 @@
 #include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
 #include "host/spectrum/convert.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -155,12 +155,12 @@ void check_weighs(const RigidBody& centred) {
                           centred.mass, si ? " kg" : "", least, si ? " kg m^2" : ""));
 }
 
-RigidBody with_moments(RigidBody body, Coefficients moments, int order) {
+RigidBody with_moments(RigidBody body, Multipoles moments, int order) {
   check_weighs(body);
   body.order = order;
   if (order < 3) return body;
   for (int l = 0; l <= 2; ++l)
-    for (int m = 0; m <= l; ++m) moments.values[Coefficients::index(l, m)] = 0;
+    for (int m = 0; m <= l; ++m) moments(l, m) = 0;
   body.higher = std::make_shared<const reference::ExteriorPotential<long double>>(moments, order);
   return body;
 }

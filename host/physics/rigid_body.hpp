@@ -2,7 +2,7 @@
 #pragma once
 
 #include "host/coefficient_set.hpp"
-#include "host/coefficients.hpp"
+#include "host/multipoles.hpp"
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
 #include "host/units.hpp"
@@ -74,7 +74,7 @@ void check_weighs(const RigidBody& centred);
 
 /// A body about its centre of mass with degrees 3 to `order` of `moments`, which are in its units. Throws Error(file_format)
 /// without a second moment, Error(bad_argument) for a mass or a moment of inertia that is not above 0.
-RigidBody with_moments(RigidBody centred, Coefficients moments, int order);
+RigidBody with_moments(RigidBody centred, Multipoles moments, int order);
 
 /// A mesh about its centre of mass, which is its origin, with exact moments to `order` >= 2. Throws Error(bad_argument) for a
 /// body without mass.

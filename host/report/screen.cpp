@@ -18,7 +18,7 @@ std::string complex_text(int m, std::complex<double> q) {
 }
 
 // Raw Q_lm in two columns, as many degrees as the paper's first table has.
-void write_table(const Coefficients& q, const Sink& sink) {
+void write_table(const Multipoles& q, const Sink& sink) {
   std::vector<std::string> rows;
   for (int l = 0; l <= std::min(q.lmax, 4); ++l)
     for (int m = 0; m <= l; ++m)
@@ -67,7 +67,7 @@ void write_accuracy(const ExpandResult& result, const Sink& sink) {
 }
 
 void write_computed(const ExpandResult& result, const Sink& sink) {
-  const Coefficients& q = result.mass;
+  const Multipoles& q = result.mass;
   sink(fmt::format(
       "computed: mass multipoles to degree {}, {} coefficients, in {:.3f} s ({} pairs of triangles, {:.1f} % of "
       "the work after the cut-off {:.0e})\n",

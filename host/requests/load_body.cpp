@@ -7,7 +7,7 @@
 #include "host/mesh/winding_notes.hpp"
 #include "host/physics/potential.hpp"
 #include "host/report/result.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 
 #include <fmt/format.h>
 
@@ -209,9 +209,9 @@ physics::RigidBody free_body(const LoadedMass& loaded, int order, Monitor& monit
                      : physics::free_body(*loaded.coefficients, loaded.units, order);
 }
 
-Coefficients moments(const LoadedMass& loaded, int lmax, Backend& backend, Monitor& monitor) {
+Multipoles moments(const LoadedMass& loaded, int lmax, Backend& backend, Monitor& monitor) {
   if (loaded.mesh) return mass_moments(mass_problems(*loaded.mesh, lmax, default_cut_off), backend, monitor);
-  Coefficients own = physics::mass_moments(*loaded.coefficients, lmax);
+  Multipoles own = physics::mass_moments(*loaded.coefficients, lmax);
   const double metre = loaded.units.metre;
   return metre == 1 ? own : physics::in_si(std::move(own), metre, std::pow(metre, 3));
 }

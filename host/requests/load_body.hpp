@@ -84,7 +84,7 @@ physics::RigidBody free_body(const LoadedMass& loaded, int order, Monitor& monit
 
 /// Moments about its origin to degree `lmax`, or what a file holds of it, in the units of `loaded`: over the sphere that
 /// holds the body, or over the file's own radius where nothing says that one. Throws what physics::mass_moments() throws.
-Coefficients moments(const LoadedMass& loaded, int lmax, Backend& backend, Monitor& monitor);
+Multipoles moments(const LoadedMass& loaded, int lmax, Backend& backend, Monitor& monitor);
 
 /// Name, hash and notes, for the head of a report.
 physics::Subject subject(const LoadedMass& loaded);

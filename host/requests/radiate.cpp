@@ -2,7 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/mesh/tensors.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ namespace {
 double by_multipoles(const LoadedMass& loaded, const RigidBody& body, const Vec3& axis) {
   if (!loaded.mesh) return quadrupole_square(spherical_quadrupole(body.quadrupole), axis);
   Monitor monitor;
-  const Coefficients q = mass_moments(mass_problems(*loaded.mesh, 2, 0), *make_cpu_backend(1), monitor);
+  const Multipoles q = mass_moments(mass_problems(*loaded.mesh, 2, 0), *make_cpu_backend(1), monitor);
   const double r2 = q.reference_radius * q.reference_radius;
   return quadrupole_square(std::array{r2 * q(2, 0), r2 * q(2, 1), r2 * q(2, 2)}, axis);
 }

@@ -5,7 +5,7 @@
 #include "host/physics/paper.hpp"
 #include "host/physics/radiate.hpp"
 #include "host/physics/rigid_body.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "host/units.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -142,7 +142,7 @@ TEST_CASE("octupole and current quadrupole of two masses are those of the binary
 TEST_CASE("the octupole is 16 pi/35 sum m^8 |Q_3m|^2 about z", "[radiate]") {
   const Body body = body_of(load_mesh("builtin:cow@2"));
   Monitor monitor;
-  const Coefficients q = mass_moments(mass_problems(body, 3, 0), *make_cpu_backend(1), monitor);
+  const Multipoles q = mass_moments(mass_problems(body, 3, 0), *make_cpu_backend(1), monitor);
   double sum = 0;
   for (int m = 1; m <= 3; ++m) sum += std::pow(m, 8) * std::norm(q(3, m));
   const double square = 16 * pi / 35 * sum * std::pow(q.reference_radius, 6);

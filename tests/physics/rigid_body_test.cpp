@@ -4,7 +4,7 @@
 #include "host/mesh/tensors.hpp"
 #include "host/physics/rigid_body.hpp"
 #include "host/spectrum/convert.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <Eigen/Geometry>
@@ -24,7 +24,7 @@ Body body_of(RawMesh mesh, const OriginChoice& origin = {}, double density = 1) 
 
 CoefficientSet multipoles(const Body& body, int lmax) {
   Monitor monitor;
-  const Coefficients q = mass_moments(mass_problems(body, lmax, 0), *make_cpu_backend(1), monitor);
+  const Multipoles q = mass_moments(mass_problems(body, lmax, 0), *make_cpu_backend(1), monitor);
   CoefficientSet set(lmax, 1);
   set.kind = CoefficientKind::multipoles;
   set.form = Form::complex;

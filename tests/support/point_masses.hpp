@@ -25,18 +25,16 @@ inline std::vector<Point> centred(std::vector<Point> points) {
 }
 
 /// Q_lm / R^l about the origin, R the largest distance.
-inline Coefficients moments_of(const std::vector<Point>& points, int lmax) {
-  Coefficients q;
-  q.lmax = lmax;
+inline Multipoles moments_of(const std::vector<Point>& points, int lmax) {
+  Multipoles q(lmax);
   q.reference_radius = 0;
-  q.values.resize(Coefficients::count(lmax));
   for (const Point& p : points) q.reference_radius = std::max(q.reference_radius, p.place.norm());
   for (const Point& p : points)
     for (int l = 0; l <= lmax; ++l)
       for (int m = 0; m <= l; ++m) {
         const double r = p.place.norm(), theta = std::acos(p.place.z() / r), phi = std::atan2(p.place.y(), p.place.x());
-        q.values[Coefficients::index(l, m)] += p.mass * std::pow(r / q.reference_radius, l) *
-                                               std::polar(std::sph_legendre(unsigned(l), unsigned(m), theta), m * phi);
+        q(l, m) += p.mass * std::pow(r / q.reference_radius, l) *
+                   std::polar(std::sph_legendre(unsigned(l), unsigned(m), theta), m * phi);
       }
   return q;
 }

@@ -1,19 +1,18 @@
-#include "host/cli/surface_source.hpp"
+#include "host/requests/surface_source.hpp"
 
-#include "host/cli/commands.hpp"
-#include "host/cli/expansion_words.hpp"
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/surface_file.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/requests/expand_surfaces.hpp"
+#include "host/requests/memory.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 namespace {
 
 Body body_of(const std::string& name, const Placement& placement = {}) {
@@ -25,27 +24,20 @@ Body body_of(const std::string& name, const Placement& placement = {}) {
 }
 
 ExpansionChoice expansion_choice(const SurfaceChoice& choice, int largest_order) {
-  const std::string of = choice.of.empty() ? "stretch" : choice.of;
-  const int lmax = choice.lmax >= 0 ? choice.lmax : std::max(largest_order, default_lmax);
-  ExpansionChoice maps = parse_expansions(of, "default", "", lmax);
-  if (maps.mass || maps.maps.size() != 1)
+  const auto map = choice.of.empty() ? MapMethod::stretch : map_method_named(choice.of);
+  if (!map)
     throw Error(Fault::bad_argument,
-                fmt::format("--of {}: a body is rebuilt over one map: harmonic, stretch, smooth or flow", of));
+                fmt::format("--of {}: a body is rebuilt over one map: harmonic, stretch, smooth or flow", choice.of));
+  ExpansionChoice maps;
+  maps.maps = {*map};
+  maps.lmax = choice.lmax >= 0 ? choice.lmax : std::max(largest_order, default_lmax);
   return maps;
 }
 
 SurfaceSource from_file(const SurfaceChoice& choice, Monitor& monitor) {
-  SurfaceFile file = read_surface(choice.input, choice.of);
-  SurfaceSource source;
-  source.name = file.name;
-  source.expansion = std::move(file.expansion);
-  source.recipe = file.recipe;
-  source.map_method = file.map_method;
-  source.mesh = file.mesh;
-  source.mesh_hash = file.mesh_hash;
-  source.placement = file.placement;
+  SurfaceSource source{read_surface(choice.input, choice.of), {}, {}};
   if (choice.mesh.empty()) return source;
-  source.body = body_of(choice.mesh, file.placement);
+  source.body = body_of(choice.mesh, source.placement);
   const RawMesh& mesh = source.body->surface.mesh();
   source.notes = body_notes(source.body->surface, monitor);
   if (mesh.sha256 != source.mesh_hash)
@@ -65,10 +57,10 @@ SurfaceSource from_mesh(const SurfaceChoice& choice, int largest_order, Backend&
   std::vector<SurfaceResult> results = expand_surfaces(maps, false, *source.body, backend, monitor);
   check_surfaces(results);
   SurfaceResult& result = results.front();
-  source.name = result.name;
+  source.name = name(result.of);
   source.expansion = std::move(result.expansion);
   source.recipe = result.recipe;
-  source.map_method = result.map.method;
+  source.map_method = name(result.map.method);
   for (const std::string& sentence : result.quality.sentences) source.notes.push_back("map: " + sentence);
   return source;
 }
@@ -102,12 +94,6 @@ SurfaceSource load_surface(const SurfaceChoice& choice, int largest_order, Backe
   return source;
 }
 
-SurfaceFields parse_fields(const std::string& text) {
-  if (text == "xyz") return SurfaceFields::xyz;
-  if (text == "f") return SurfaceFields::f;
-  throw Error(Fault::bad_argument, fmt::format("--fields {}: it must be xyz or f", text));
-}
-
 // Eight points a wavelength where that is affordable, two and more always.
 int default_resolution(int order) {
   return std::clamp(4 * order, 64, std::max(order, 256));
@@ -122,4 +108,4 @@ MemoryNeed rebuild_memory(int order, int resolution, const Backend& backend) {
   return need;
 }
 
-} // namespace cowgpu::cli
+} // namespace cowgpu

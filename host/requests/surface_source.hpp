@@ -1,7 +1,8 @@
-// Surface expansions for the commands that rebuild bodies: of a mesh, or from a result file.
+// Surface expansions for what rebuilds bodies: of a mesh, or from a result file.
 #pragma once
 
 #include "host/backend.hpp"
+#include "host/io/surface_file.hpp"
 #include "host/mesh/body.hpp"
 #include "host/spectrum/reconstruct.hpp"
 
@@ -9,9 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 
-/// What the options say.
+/// Where an expansion of a surface comes from.
 struct SurfaceChoice {
   std::string input; ///< a mesh, or a result file (FILE.json)
   std::string of;    ///< a map's name, or ""; see load_surface()
@@ -22,13 +23,9 @@ struct SurfaceChoice {
 /// Degrees beyond the orders that are rebuilt cost little, and the finer grid keeps aliasing out of them.
 inline constexpr int default_lmax = 64;
 
-struct SurfaceSource {
-  std::string name; ///< name of the expansion: "stretch"
-  SurfaceExpansion expansion;
-  std::string recipe, map_method;
-  std::string mesh, mesh_hash; ///< name and SHA-256 of the mesh that was expanded
-  Placement placement;         ///< placement of that mesh, before it was expanded
-  std::optional<Body> body;    ///< where the mesh is known; density 1
+/// An expansion as a file would hold it, whether it comes from one or not.
+struct SurfaceSource : SurfaceFile {
+  std::optional<Body> body; ///< where the mesh is known; density 1
   std::vector<std::string> notes;
 };
 
@@ -41,13 +38,10 @@ SurfaceSource load_surface(const SurfaceChoice& choice, int largest_order, Backe
 /// The parts of that which need no work: words that mean nothing. Throws Error(bad_argument).
 void check_surface_choice(const SurfaceChoice& choice, int largest_order);
 
-/// Reads --fields: "xyz" or "f".
-SurfaceFields parse_fields(const std::string& text);
-
 /// Degree of the Clenshaw-Curtis grid that a body of this order is triangulated on unless told otherwise.
 int default_resolution(int order);
 
 /// What reconstruct() and measure() take at most for this order, beside the expansion.
 MemoryNeed rebuild_memory(int order, int resolution, const Backend& backend);
 
-} // namespace cowgpu::cli
+} // namespace cowgpu

@@ -1,15 +1,14 @@
-#include "host/cli/coefficient_outputs.hpp"
+#include "host/report/expansion_file.hpp"
 
-#include "host/cli/console.hpp"
 #include "host/error.hpp"
 #include "host/report/coefficient_sets.hpp"
 #include "host/spectrum/convert.hpp"
 
 #include <fmt/format.h>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 
-void check_expansion_output(const std::string& path, bool mass, std::size_t surfaces) {
+void check_expansion_file(const std::string& path, bool mass, std::size_t surfaces) {
   const CoefficientFormat format = coefficient_format(path);
   if (format == CoefficientFormat::json || format == CoefficientFormat::csv) return;
   const auto refuse = [&](const char* sentence) {
@@ -24,9 +23,9 @@ void check_expansion_output(const std::string& path, bool mass, std::size_t surf
     refuse("a .nc file holds one expansion, and --of asks for several; .json and .csv hold them all");
 }
 
-void write_expansion(const ExpandResult& result, CoefficientFormat format, AtomicFile& file) {
+void write_expansion(const ExpandResult& result, CoefficientFormat format, AtomicFile& file, const Monitor& monitor) {
   const Sink sink = [&](std::string_view text) {
-    check_stop(ConsoleMonitor(ProgressStyle::none));
+    check_stop(monitor);
     file.write(text);
   };
   if (format == CoefficientFormat::json) return write_json(result, sink);
@@ -42,4 +41,4 @@ void write_expansion(const ExpandResult& result, CoefficientFormat format, Atomi
   write_coefficient_set(converted(set, target), format, file);
 }
 
-} // namespace cowgpu::cli
+} // namespace cowgpu
