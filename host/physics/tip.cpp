@@ -1,12 +1,14 @@
 #include "host/physics/tip.hpp"
 
 #include "host/error.hpp"
+#include "host/spectrum/reconstruct.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace cowgpu::physics {
@@ -95,6 +97,16 @@ RigidBody smooth_body(const TriangleSurface& surface, double mass, std::string& 
   return body;
 }
 
+RigidBody ball_like(const RigidBody& body, double volume) {
+  const SphereTriangulation sphere = icosphere(4);
+  const double radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
+  TriangleSurface ball;
+  ball.faces = sphere.faces;
+  for (const Vec3& direction : sphere.directions) ball.vertices.emplace_back(body.centre + radius * direction);
+  std::string note;
+  return smooth_body(ball, body.mass, note);
+}
+
 Stance stand(RigidBody body, const StandOptions& options, const Monitor& monitor) {
   Stance stance;
   stance.inertia = body.inertia();
@@ -167,6 +179,10 @@ Tipping tipping(const Stance& stance, Side side) {
   t.friction_needed = t.force * std::abs(t.direction.z()) / (1 - t.force * t.direction.y());
   t.inertia = stance.inertia(0, 0) + body.mass * t.radius * t.radius;
   return t;
+}
+
+Rocker rocker(double mass, const Tipping& tipping, double gravity, bool turns_with_body) {
+  return {mass, gravity, tipping.inertia, tipping.radius, tipping.balance_angle(), tipping.lever, turns_with_body};
 }
 
 Side weaker_side(const Tipping& left, const Tipping& right) {

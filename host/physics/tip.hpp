@@ -16,6 +16,7 @@
 #include "host/mesh/triangle_surface.hpp"
 #include "host/monitor.hpp"
 #include "host/physics/feet.hpp"
+#include "host/physics/push.hpp"
 #include "host/physics/rigid_body.hpp"
 #include "host/physics/settle.hpp"
 
@@ -33,6 +34,9 @@ inline constexpr double standard_gravity = 9.80665; ///< m/s^2
 /// number, and what is inside out as a whole is turned; `note` says so. Throws what ClosedSurface::from() and make_body()
 /// throw.
 RigidBody smooth_body(const TriangleSurface& surface, double mass, std::string& note);
+
+/// A ball with this body's centre and mass and so large a volume, smooth, standing on one of its vertices as modelled.
+RigidBody ball_like(const RigidBody& body, double volume);
 
 /// How a body is stood on the ground.
 struct StandOptions {
@@ -83,6 +87,9 @@ struct Tipping {
 
 /// Throws Error(cannot_stand) where the ray q meets no surface (a barycentre outside the body, and nothing beyond).
 Tipping tipping(const Stance& stance, Side side);
+
+/// The same as a body that is pushed for a while, in SI.
+Rocker rocker(double mass, const Tipping& tipping, double gravity, bool turns_with_body);
 
 /// The side that needs less; the right where both need the same to 1e-12.
 Side weaker_side(const Tipping& left, const Tipping& right);

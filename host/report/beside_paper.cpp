@@ -1,5 +1,7 @@
 #include "host/report/beside_paper.hpp"
 
+#include "host/io/mesh_source.hpp"
+#include "host/mesh/geometry.hpp"
 #include "host/physics/paper.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace cowgpu {
 
@@ -69,6 +72,39 @@ std::vector<Comparison> beside_paper(const RadiationResult& r) {
        "the paper rounds the timescale to 1.9e49 s and takes years of 365 days"},
       {"the same with its rounding", rounded, paper::deficit},
   };
+}
+
+std::vector<Comparison> beside_paper(const TipResult& found, const Monitor& monitor) {
+  const RigidBody& body = found.body;
+  const double weight = found.forces.weight();
+  constexpr double human = paper::sustained_force_N;
+  std::vector<Comparison> rows;
+  const auto add = [&](const std::string& what, double force) {
+    rows.push_back({what, force, human,
+                    fmt::format("no force is printed: 500 N are 'out of reach by a factor of a few', here {:.2f}",
+                                force / human)});
+  };
+  const double volume = cowgpu::volume(body.vertices, body.faces);
+  const Stance ball = stand(ball_like(body, volume), {}, monitor);
+  rows.push_back({"spherical cow, N", tipping(ball, Side::right).force * weight, 0});
+  const auto weaker = [](const Stance& stance) {
+    const Tipping left = tipping(stance, Side::left), right = tipping(stance, Side::right);
+    return weaker_side(left, right) == Side::left ? left : right;
+  };
+  const Side side = found.forces.side;
+  const Tipping settled = !found.as_modelled ? found.forces.chosen()
+                          : found.side_given ? tipping(stand(body, {}, monitor), side)
+                                             : weaker(stand(body, {}, monitor));
+  add("settled, N", settled.force * weight);
+  add("settled, its balance, N", settled.force_paper_balance * weight);
+  if (settled.force_paper_literal) add("settled, its arm in space, N", *settled.force_paper_literal * weight);
+  if (found.subject.sha256 != benchmark_sha256) return rows;
+  for (const auto& [what, tolerance] :
+       {std::pair("hind hooves' tips", 0.0), std::pair("hind hooves", 0.005), std::pair("all hooves", 0.01)}) {
+    const Tipping modelled = weaker(stand(body, {true, tolerance * body.units.metre}, monitor));
+    add(fmt::format("as modelled, {}, N", what), modelled.force * weight);
+  }
+  return rows;
 }
 
 } // namespace cowgpu
