@@ -1,12 +1,12 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/drawing.hpp"
 #include "host/cli/expansion_words.hpp"
-#include "host/cli/tip_input.hpp"
 #include "host/requests/expand_surfaces.hpp"
 
 #include "host/error.hpp"
 #include "host/figures/figures.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/physics/tip.hpp"
 #include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
@@ -134,7 +134,7 @@ private:
   // A ball of the body's volume on the left, the body on the right.
   plot::Canvas tipping() {
     using namespace physics;
-    const TipBody cow = tip_body(body_);
+    const RigidBody cow = solid_body(body_);
     const Stance stance = stand(cow, {}), ball = stand(ball_like(cow, body_.mass()), {.as_modelled = true});
     const Tipping of_cow = physics::tipping(stance, Side::right), of_ball = physics::tipping(ball, Side::right);
     const std::array shown = {figures::TippedBody{&ball, &of_ball, "spherical body"},

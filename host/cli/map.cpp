@@ -2,6 +2,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/expansion_words.hpp"
 #include "host/cli/mend_options.hpp"
+#include "host/requests/paper_recipe.hpp"
 
 #include "host/error.hpp"
 #include "host/io/map_file.hpp"
@@ -63,7 +64,7 @@ Pole parse_pole(const std::string& text) {
 }
 
 HarmonicOptions harmonic_options(const Options& options) {
-  if (options.recipe == "paper") return HarmonicOptions::paper_recipe();
+  if (options.recipe == "paper") return paper::harmonic_map();
   HarmonicOptions harmonic;
   harmonic.weights = options.weights == "tutte"        ? EdgeWeights::tutte
                      : options.weights == "mean-value" ? EdgeWeights::mean_value

@@ -30,7 +30,7 @@ constexpr std::size_t most_shown = 20, most_in_json = 200; // points
 struct Options {
   PlaceOptions places;
   int lmax = -1, derivatives = 2;
-  bool exact = false, charge = false, errors = false;
+  bool exact = false, errors = false;
   std::string inside = "refuse", output, distances = "1,1.1,1.5,2,3,5,10";
   std::vector<std::string> plots;
   std::vector<std::string> orders = {"0,1,2,4,8,16,32"};
@@ -130,7 +130,7 @@ Multipoles continued_down(const Multipoles& moments, const Solved& s) {
   return over_radius(moments, least);
 }
 
-void compute(const PhysicsInput& input, const Options& options, const Multipoles& moments, Backend& backend,
+void compute(const LoadedMass& input, const Options& options, const Multipoles& moments, Backend& backend,
              unsigned threads, Monitor& monitor, Solved& s) {
   const auto derivatives = Derivatives(options.derivatives);
   const std::size_t count = s.places.points.size();
@@ -141,14 +141,14 @@ void compute(const PhysicsInput& input, const Options& options, const Multipoles
       throw Error(Fault::file_format,
                   fmt::format("{}: point {} of {} is farther than {}, beyond what doubles hold of its field{}",
                               s.places.name, i + 1, count, options.exact ? "any double" : "1e150 radii of the body",
-                              options.exact || !input.body ? "" : "; --exact goes farther"));
+                              options.exact || !input.mesh ? "" : "; --exact goes farther"));
     // On the sphere itself, where a vertex may lie, the series does not converge either.
     const double nearest = options.inside == "exact" ? 1 + 1e-9 : nearest_potential;
     const bool by_polyhedron = options.exact || (s.radius_known && !(r >= nearest * s.frame.radius));
     if (!by_polyhedron) s.nearest = std::min(s.nearest, r / s.frame.radius);
     (by_polyhedron ? inside : outside).push_back(i);
   }
-  if (!inside.empty() && !options.exact && options.inside != "exact") refuse_inside(s, inside, input.body.has_value());
+  if (!inside.empty() && !options.exact && options.inside != "exact") refuse_inside(s, inside, input.mesh.has_value());
   s.field.value.resize(count);
   if (derivatives != Derivatives::none) s.field.gradient.resize(count);
   if (derivatives == Derivatives::second) s.field.hessian.resize(count);
@@ -158,7 +158,7 @@ void compute(const PhysicsInput& input, const Options& options, const Multipoles
          outside, s.field);
   if (inside.empty()) return;
   const std::vector<Vec3> points = chosen(s.places.points, inside, Vec3::Zero());
-  ExactField exact = exact_field(*input.body, points, derivatives, threads, monitor);
+  ExactField exact = exact_field(*input.mesh, points, derivatives, threads, monitor);
   take(exact.field, inside, s.field);
   s.exact.assign(count, 0);
   for (std::size_t i = 0; i < inside.size(); ++i) s.exact[inside[i]] = exact.by_series[i] ? 0 : 1;
@@ -237,7 +237,7 @@ void add_table(const Solved& s, bool json, Findings& found) {
   found.tables.push_back(std::move(table));
 }
 
-void check_options(const PhysicsOptions& common, const Options& options) {
+void check_options(const PhysicsCall& common, const Options& options) {
   const auto refuse = [](const std::string& why) { throw Error(Fault::bad_argument, why); };
   const bool file = is_coefficient_file(common.body.mesh);
   if (options.errors && (options.places.any() || options.exact || !options.output.empty()))
@@ -303,15 +303,15 @@ std::string computed_by(const Solved& s, const Backend& backend, unsigned thread
   return fmt::format("series: {}; polyhedron: {}", device_line(backend.facts()), extended);
 }
 
-void add_head(const PhysicsInput& input, const Options& options, const Solved& s, bool metric, Findings& found) {
+void add_head(const LoadedMass& input, const Options& options, const Solved& s, bool metric, Findings& found) {
   if (!metric)
     found.notes.push_back(
         fmt::format("lengths and densities are in the mesh's units and {} = 1; --length-unit or --length, "
                     "and --density, make it SI",
-                    options.charge ? "k" : "G"));
-  if (options.charge)
+                    s.units.law.charge ? "k" : "G"));
+  if (s.units.law.charge)
     found.notes.push_back("densities are of charge: potential k Q/r, field -grad of it, away from positive charges");
-  if (!input.body && !input.coefficients->origin)
+  if (!input.mesh && !input.coefficients->origin)
     found.notes.push_back("the file does not say its origin: places are counted from it");
   add_exact_notes(options, s, found);
   if (const double rest = std::pow(s.nearest, -(s.lmax + 1));
@@ -320,7 +320,7 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
         fmt::format("the nearest point of the series is {:.6g} radii away: to degree {} its terms have fallen "
                     "to {:.2g} there at most; {} is nearer to the truth",
                     s.nearest, s.lmax, rest,
-                    input.body ? "a higher --lmax, or --exact," : "the mesh, with --exact or a higher --lmax,"));
+                    input.mesh ? "a higher --lmax, or --exact," : "the mesh, with --exact or a higher --lmax,"));
   if (!s.radius_known) {
     found.notes.push_back(unknown_radius_note(input) +
                           "; 1R is the reference radius here, and the sum of the file's terms is taken everywhere");
@@ -330,9 +330,9 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
                                         "grown {:.3g} times",
                                         s.nearest, s.lmax, std::pow(s.nearest, -(s.lmax + 1))));
   }
-  found.rows = {{"law", "law", std::string(options.charge ? "charge" : "gravity")},
-                {"constant", options.charge ? "Coulomb's constant" : "Newton's constant", s.units.law.constant,
-                 metric ? (options.charge ? "N m^2/C^2" : "m^3/(kg s^2)") : ""},
+  found.rows = {{"law", "law", std::string(s.units.law.charge ? "charge" : "gravity")},
+                {"constant", s.units.law.charge ? "Coulomb's constant" : "Newton's constant", s.units.law.constant,
+                 metric ? (s.units.law.charge ? "N m^2/C^2" : "m^3/(kg s^2)") : ""},
                 {"lmax", "series to degree", options.exact ? Value() : Value(double(s.lmax))},
                 {"origin", "origin", s.frame.origin, s.units.length},
                 {"brillouin_radius", "Brillouin radius", s.radius_known ? Value(s.frame.radius) : Value(),
@@ -346,7 +346,7 @@ void add_head(const PhysicsInput& input, const Options& options, const Solved& s
                           std::isfinite(s.exact_error) ? Value(s.exact_error) : Value(), "",
                           "none: the potential is 0"});
   }
-  if (!input.body)
+  if (!input.mesh)
     found.rows.push_back({"reference_radius", "reference radius of the file", s.reference_radius, s.units.length});
 }
 
@@ -362,23 +362,22 @@ std::vector<Comparison> beside_paper() {
   return rows;
 }
 
-int degree_wanted(const PhysicsInput& input, const Options& options) {
+int degree_wanted(const LoadedMass& input, const Options& options) {
   if (options.lmax >= 0) {
     if (input.coefficients && options.lmax > input.coefficients->lmax)
       throw Error(Fault::bad_argument, fmt::format("--order {}: the file's coefficients end at degree {}", options.lmax,
                                                    input.coefficients->lmax));
     return options.lmax;
   }
-  return input.body ? usual_degree : std::min(input.coefficients->lmax, largest_potential_degree);
+  return input.mesh ? usual_degree : std::min(input.coefficients->lmax, largest_potential_degree);
 }
 
-Findings solve(const PhysicsOptions& typed, const Options& options, const Common& common) {
-  check_options(typed, options);
-  PhysicsOptions own = typed;
-  own.body.charge = options.charge;
+Findings solve(const PhysicsCall& call, const Options& options, const Common& common) {
+  check_options(call, options);
   std::unique_ptr<AtomicFile> file;
   if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
-  const PhysicsInput input = load_input(own);
+  ConsoleMonitor monitor(common.style());
+  const LoadedMass input = load_mass(call.body, Motion::held, monitor);
   std::string note;
   // The closed form is computed in 80-bit numbers, which no device has.
   const bool on_device = !options.exact;
@@ -389,18 +388,18 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
                     "the CPU",
                     common.device);
   if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
-  ConsoleMonitor monitor(common.style());
   if (options.errors)
-    return series_errors_found(input, own, {options.orders, options.distances, options.plots}, *backend, common.threads,
+    return series_errors_found(input, {options.orders, options.distances, options.plots}, *backend, common.threads,
                                monitor);
 
   Solved s;
   s.lmax = options.exact ? 0 : degree_wanted(input, options);
-  const PlacedMoments placed = placed_moments(input, own, s.lmax, *backend, monitor);
-  s.units = units_of(placed.metric, options.charge);
-  s.frame = {placed.moments.origin, placed.moments.reference_radius, placed.metric};
-  s.radius_known = placed.radius_known;
-  if (input.coefficients) s.reference_radius = *input.coefficients->reference_radius * placed.metres;
+  const Multipoles own = moments(input, s.lmax, *backend, monitor);
+  const bool si = input.units.stated;
+  s.units = units_of(si, call.body.charge);
+  s.frame = {own.origin, own.reference_radius, si};
+  s.radius_known = input.mesh || input.coefficients->brillouin_radius;
+  if (input.coefficients) s.reference_radius = *input.coefficients->reference_radius * input.units.metre;
   const auto check_count = [&](std::size_t count) {
     MemoryNeed need = backend->potential_memory(count, s.lmax, Derivatives(options.derivatives));
     need.host += 64 * count + (options.output.empty() ? 0 : potential_file_bytes(count));
@@ -409,25 +408,25 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
   check_count(count_places(options.places));
   s.places = read_places(options.places, s.frame);
   check_count(s.places.points.size());
-  compute(input, options, placed.moments, *backend, common.threads, monitor, s);
+  compute(input, options, own, *backend, common.threads, monitor, s);
   monitor.clear();
   apply_law(s.units.law, s.field);
 
-  Findings found = findings_about(input, own);
+  Findings found(subject(input));
   if (!note.empty()) found.notes.push_back(note);
-  add_head(input, options, s, placed.metric, found);
+  add_head(input, options, s, si, found);
   if (s.places.points.size() == 1) {
     add_one_point(s, found);
   } else {
     add_ranges(s, found);
-    add_table(s, own.json, found);
+    add_table(s, call.json, found);
   }
   found.rows.push_back({"device", "device", computed_by(s, *backend, common.threads)});
-  if (own.paper()) found.paper = beside_paper();
+  if (call.paper) found.paper = beside_paper();
   if (file) {
-    const PotentialTable table{found.input_name, s.places.points, s.field,           s.exact,
-                               options.charge,   s.units.length,  s.units.potential, s.units.force,
-                               s.units.tensor,   s.places.grid,   s.places.radius};
+    const PotentialTable table{found.input_name,   s.places.points, s.field,           s.exact,
+                               s.units.law.charge, s.units.length,  s.units.potential, s.units.force,
+                               s.units.tensor,     s.places.grid,   s.places.radius};
     write_potentials(table, file_format(options.output), *file, monitor);
     check_stop(monitor);
     file->commit();
@@ -438,7 +437,7 @@ Findings solve(const PhysicsOptions& typed, const Options& options, const Common
 
 } // namespace
 
-Solve add_potential(Command& command, Common& common) {
+Solve add_potential(Command& command, Common& common, BodyOptions& body) {
   const auto options = std::make_shared<Options>();
   command
       .add_option("--at", options->places.at,
@@ -477,7 +476,7 @@ Solve add_potential(Command& command, Common& common) {
       ->capture_default_str();
   command.add_flag("--exact", options->exact,
                    "The polyhedron's closed form everywhere, or where it is nearer to the truth (far away) its series");
-  command.add_flag("--charge", options->charge, "--density is one of charge (C/m3): volts, and volts a metre");
+  command.add_flag("--charge", body.charge, "--density is one of charge (C/m3): volts, and volts a metre");
   command.add_flag("--errors", options->errors,
                    "Instead of the field, relative errors of the series against the polyhedron, by distance and order");
   command.add_option("--orders", options->orders, "Orders of --errors, such as 0..4,8")
@@ -494,7 +493,7 @@ Solve add_potential(Command& command, Common& common) {
       ->type_name("FILE");
   command.add_option("-o,--output", options->output, "Point by point: FILE.csv or FILE.nc")->type_name("FILE");
   add_common_options(command, common);
-  return [options, &common](const PhysicsOptions& typed) { return solve(typed, *options, common); };
+  return [options, &common](const PhysicsCall& call) { return solve(call, *options, common); };
 }
 
 } // namespace cowgpu::cli

@@ -59,16 +59,16 @@ void add_errors(const SeriesErrors& errors, Findings& found) {
 
 } // namespace
 
-Findings series_errors_found(const PhysicsInput& input, const PhysicsOptions& common, const ErrorOptions& options,
-                             Backend& backend, unsigned threads, Monitor& monitor) {
+Findings series_errors_found(const LoadedMass& loaded, const ErrorOptions& options, Backend& backend, unsigned threads,
+                             Monitor& monitor) {
   const std::vector<int> orders = parse_orders(options.orders);
   for (const int order : orders)
     if (order > largest_potential_degree)
       throw Error(Fault::bad_argument, fmt::format("--orders: {} is beyond {}, the largest degree of a potential",
                                                    order, largest_potential_degree));
   const std::vector<double> distances = parse_distances(options.distances);
-  const SeriesErrors errors = series_errors(*input.body, orders, distances, backend, threads, monitor);
-  Findings found = findings_about(input, common);
+  const SeriesErrors errors = series_errors(*loaded.mesh, orders, distances, backend, threads, monitor);
+  Findings found(subject(loaded));
   found.notes.push_back(fmt::format(
       "the truth is the exact potential of the polyhedron (Werner and Scheeres 1997), from {:.4g} radii on the series "
       "to degree {}",
@@ -77,9 +77,9 @@ Findings series_errors_found(const PhysicsInput& input, const PhysicsOptions& co
                         "ends of the axes, over the outermost vertices, and uphill from the best of these; rounding, "
                         "about 1e-15, is not in them");
   found.rows = {
-      {"origin", "origin", input.body->origin, std::string(input.body->placement.metric ? "m" : mesh_length_unit)},
-      {"brillouin_radius", "Brillouin radius", input.body->brillouin_radius,
-       std::string(input.body->placement.metric ? "m" : mesh_length_unit)}};
+      {"origin", "origin", loaded.mesh->origin, std::string(loaded.mesh->units().stated ? "m" : mesh_length_unit)},
+      {"brillouin_radius", "Brillouin radius", loaded.mesh->brillouin_radius,
+       std::string(loaded.mesh->units().stated ? "m" : mesh_length_unit)}};
   add_errors(errors, found);
   for (const std::string& picture : options.plots)
     plot::write_plot(series_errors_plot(errors, fmt::format("How good the multipoles of {} are", found.input_name)),

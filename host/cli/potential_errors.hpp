@@ -16,8 +16,7 @@ struct ErrorOptions {
 };
 
 /// Tables and pictures. Throws Error(bad_argument) for orders and distances that mean nothing; what series_errors() throws.
-physics::Findings series_errors_found(const PhysicsInput& input, const PhysicsOptions& common,
-                                      const ErrorOptions& options, Backend& backend, unsigned threads,
-                                      Monitor& monitor);
+physics::Findings series_errors_found(const LoadedMass& loaded, const ErrorOptions& options, Backend& backend,
+                                      unsigned threads, Monitor& monitor);
 
 } // namespace cowgpu::cli

@@ -4,7 +4,7 @@
 #include "host/paper/printed.hpp"
 #include "host/paper/surface_tables.hpp"
 #include "host/physics/radiate.hpp"
-#include "host/physics/tensors.hpp"
+#include "host/physics/rigid_body.hpp"
 #include "host/reference/potential.hpp"
 #include "host/sphere_grid.hpp"
 #include "host/units.hpp"
@@ -113,24 +113,24 @@ std::vector<Comparison> errata_numbers() {
 }
 
 std::vector<Comparison> errata_numbers(const Body& benchmark) {
-  const MassTensors tensors = about_centre(mass_tensors(benchmark));
+  const RigidBody body = about_centre(rigid_body(benchmark));
   const Vec3 p = pivot(benchmark);
   const RawMesh& mesh = benchmark.surface.mesh();
   const double unit_of_length = cow_length_m / bounding_box(mesh.vertices, mesh.faces).longest_side();
   const double mass = number("radiation", "mass in kg");
-  return {erratum_number(5, "Im Q_22", spherical_quadrupole(tensors.quadrupole)[2].imag(),
-                         number("tensors", "Im conj Q_22")),
-          erratum_number(7, "deficit with exact tensors", deficit(tensors.quadrupole, tensors.inertia()(1, 1)),
-                         number("radiation", "1 - omega now")),
-          erratum_number(11, "lever of the lowest hoof about x", p.z(), std::hypot(p.x(), p.z())),
-          erratum_number(14, "volume", benchmark.volume, number("tensors", "volume")),
-          erratum_number(14, "mass in kg", benchmark.volume * mass_unit(), mass),
-          erratum_number(14, "Q_00", tensors.mass / std::sqrt(4 * pi), number("tensors", "Q_00")),
-          erratum_number(18, "length of the mesh", cow_length_m / unit_of_length, number("bounding box", "x")),
-          erratum_number(18, "unit of length in m", unit_of_length, length_unit()),
-          erratum_number(18, "power at fixed density, over that of 2.39 m",
-                         std::pow(unit_of_length / length_unit(), 10), 1),
-          erratum_number(18, "mass in kg", benchmark.volume * 1000 * std::pow(unit_of_length, 3), mass)};
+  return {
+      erratum_number(5, "Im Q_22", spherical_quadrupole(body.quadrupole)[2].imag(), number("tensors", "Im conj Q_22")),
+      erratum_number(7, "deficit with exact tensors", deficit(body.quadrupole, body.inertia()(1, 1)),
+                     number("radiation", "1 - omega now")),
+      erratum_number(11, "lever of the lowest hoof about x", p.z(), std::hypot(p.x(), p.z())),
+      erratum_number(14, "volume", benchmark.volume, number("tensors", "volume")),
+      erratum_number(14, "mass in kg", benchmark.volume * mass_unit(), mass),
+      erratum_number(14, "Q_00", body.mass / std::sqrt(4 * pi), number("tensors", "Q_00")),
+      erratum_number(18, "length of the mesh", cow_length_m / unit_of_length, number("bounding box", "x")),
+      erratum_number(18, "unit of length in m", unit_of_length, length_unit()),
+      erratum_number(18, "power at fixed density, over that of 2.39 m", std::pow(unit_of_length / length_unit(), 10),
+                     1),
+      erratum_number(18, "mass in kg", benchmark.volume * 1000 * std::pow(unit_of_length, 3), mass)};
 }
 
 } // namespace cowgpu::paper

@@ -51,7 +51,19 @@ struct Comparison {
   int erratum = 0;        ///< the number of the erratum that it shows (host/paper/errata.hpp); 0: none
 };
 
+/// The input that findings are about, and what there is to say of it.
+struct Subject {
+  std::string title;
+  std::string kind, name, sha256; ///< as in Findings
+  std::vector<std::string> notes;
+};
+
 struct Findings {
+  Findings() = default;
+  explicit Findings(const Subject& subject)
+      : title(subject.title), input_kind(subject.kind), input_name(subject.name), input_sha256(subject.sha256),
+        notes(subject.notes) {}
+
   std::string title;
   std::string input_kind, input_name, input_sha256; ///< "mesh" or "coefficients"; a mesh's hash, else empty
   std::vector<Finding> rows;

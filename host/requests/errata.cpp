@@ -6,6 +6,7 @@
 #include "host/map/laplacian.hpp"
 #include "host/map/quality.hpp"
 #include "host/mesh/half_edges.hpp"
+#include "host/paper/recipe.hpp"
 #include "host/paper/surface_tables.hpp"
 #include "host/report/order_names.hpp"
 #include "host/spectrum/expand_surface.hpp"
@@ -45,7 +46,7 @@ Comparison misfit_of_dphi(const char* what, const ClosedSurface& cow, const Sphe
 
 // Numbers about the harmonic map by the paper's recipe.
 void add_harmonic(const ManifoldSurface& surface, Backend& backend, Monitor& monitor, ErrataResult& found) {
-  const SphereMap map = harmonic_map(surface, HarmonicOptions::paper_recipe(), monitor);
+  const SphereMap map = harmonic_map(surface, paper::harmonic_map(), monitor);
   found.numbers.push_back(misfit_of_dphi("harmonic", surface.closed(), map, paper_harmonic_table(), backend, monitor));
   const SparseMatrix l = laplacian(surface, HalfEdges(surface), EdgeWeights::cotangent);
   int negative = 0;
@@ -64,13 +65,15 @@ Comparison refined_monopole(const ClosedSurface& cow, double table, Backend& bac
   options.lmax = 3;
   options.grid_degree = 256;
   const auto flow = backend.distance_flow(cow.vertices(), cow.faces());
-  const SheetExpansion sheets = expand_sheets(cow.mesh(), 0.2, 2, flow_tolerance, options, *flow, backend, monitor);
+  const SheetExpansion sheets =
+      expand_sheets(cow.mesh(), paper::flow_time, 2, flow_tolerance, options, *flow, backend, monitor);
   return erratum_number(15, "monopole of f_r at t = 0.2, mesh refined",
                         sheets.expansion.coefficients.at(0, 0, 0).real(), table, sheets.uncertainty[0][0]);
 }
 
 void add_flow(const ClosedSurface& cow, Backend& backend, Monitor& monitor, ErrataResult& found) {
-  const SphereMap map = paper_flow_map(cow.mesh(), Vec3::Zero(), backend, monitor);
+  const SphereMap map =
+      stepped_flow_map(cow.mesh(), Vec3::Zero(), paper::flow_time, paper::flow_step, backend, monitor);
   found.numbers.push_back(misfit_of_dphi("flow", cow, map, paper_flow_table(), backend, monitor));
   const double table = paper_flow_table().front().values[0].real();
   found.numbers.push_back(erratum_number(15, "monopole of f_r at large times",
@@ -80,7 +83,7 @@ void add_flow(const ClosedSurface& cow, Backend& backend, Monitor& monitor, Erra
                                          table));
   found.numbers.push_back(refined_monopole(cow, table, backend, monitor));
   const StarShapeTime star = star_shape_time(cow.vertices(), cow.faces(), Vec3::Zero(), 1e-6, backend, monitor);
-  found.numbers.push_back(erratum_number(17, "least time for a star-shaped cow", star.upper, 0.2));
+  found.numbers.push_back(erratum_number(17, "least time for a star-shaped cow", star.upper, paper::flow_time));
 }
 
 } // namespace

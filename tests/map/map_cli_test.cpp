@@ -5,6 +5,7 @@
 #include "host/map/harmonic.hpp"
 #include "host/map/quality.hpp"
 #include "host/map/stretch.hpp"
+#include "host/paper/recipe.hpp"
 #include "host/report/map_report.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/run_program.hpp"
@@ -210,7 +211,7 @@ TEST_CASE("the JSON of a map holds the findings of judge()", "[map-cli]") {
   REQUIRE(run.exit_code == 0);
   const auto json = nlohmann::json::parse(run.out);
   const auto surface = manifold(load_mesh("builtin:cow@1"));
-  const MapQuality want = judge(surface, harmonic_map(surface, HarmonicOptions::paper_recipe()), 32);
+  const MapQuality want = judge(surface, harmonic_map(surface, paper::harmonic_map()), 32);
   CHECK(json["schema"] == "cowgpu.map.v1");
   CHECK(json["method"] == "harmonic");
   CHECK(json["output"].is_null());

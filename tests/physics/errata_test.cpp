@@ -2,6 +2,7 @@
 #include "host/io/mesh_source.hpp"
 #include "host/paper/errata.hpp"
 #include "host/physics/radiate.hpp"
+#include "host/requests/errata.hpp"
 #include "host/paper/surface_tables.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/run_program.hpp"
@@ -48,6 +49,13 @@ TEST_CASE("eighteen errata have words, a reason and a number of their own", "[er
     CHECK(!std::string(e.why).empty());
   }
   CHECK(errata().size() == 18);
+}
+
+TEST_CASE("errata are found by a call, without the paper's mesh those of its own numbers", "[errata][requests]") {
+  const ErrataResult found = find_errata({}, silent_monitor());
+  CHECK(found.numbers.size() == errata_numbers().size() + 1);
+  for (std::size_t i = 1; i < found.numbers.size(); ++i)
+    CHECK(found.numbers[i - 1].erratum <= found.numbers[i].erratum);
 }
 
 TEST_CASE("errata 1 and 2: the square is 9.04e6 kg^2 m^4, and 3/(8 pi) is 2.807 times too little", "[errata]") {

@@ -1,6 +1,4 @@
-#include "host/cli/tip_plot.hpp"
-
-#include "host/plot/plot.hpp"
+#include "host/report/tip_plot.hpp"
 
 #include <fmt/format.h>
 
@@ -8,14 +6,11 @@
 #include <cmath>
 #include <limits>
 
-namespace cowgpu::cli {
+namespace cowgpu {
 
-void check_tip_plot(const std::string& path) {
-  plot::picture_format(path);
-}
-
-void write_tip_plot(const physics::Rocker& rocker, const PushOptions& options, const PushPlan& plan,
-                    const Monitor& monitor, const std::string& path) {
+plot::Plot tip_plot(const PushOutcome& outcome, const Monitor& monitor) {
+  const PushRequest& plan = outcome.asked;
+  const physics::Rocker& rocker = outcome.rocker;
   const double threshold = rocker.threshold();
   plot::Plot picture;
   picture.x = {.label = "force", .unit = "N", .scale = plot::Scale::logarithmic};
@@ -36,17 +31,17 @@ void write_tip_plot(const physics::Rocker& rocker, const PushOptions& options, c
   picture.regions = {tips};
   picture.series = {boundary, blow};
   picture.lines = {{true, threshold, fmt::format("threshold, {:.4g} N", threshold)},
-                   {true, plan.sustained, options.sustained + " sustained"}};
+                   {true, plan.sustained, plan.sustained_name + " sustained"}};
   picture.x.high = last;
   picture.x.low = 0.7 * std::min(threshold, plan.sustained);
-  const double least = rocker.least_duration(plan.punch, monitor);
+  const double least = outcome.punch_least_duration;
   if (std::isfinite(least))
-    picture.points = {{plan.punch, least, fmt::format("{} punch: {:.3g} s", options.punch, least)}};
+    picture.points = {{plan.punch, least, fmt::format("{} punch: {:.3g} s", plan.punch_name, least)}};
   if (plan.punch_duration)
     picture.points.push_back({plan.punch, *plan.punch_duration,
-                              fmt::format("{} for {}", options.punch, options.punch_duration), plot::black,
+                              fmt::format("{} for {}", plan.punch_name, plan.punch_duration_name), plot::black,
                               plot::Marker::cross});
-  plot::write_plot(picture, path);
+  return picture;
 }
 
-} // namespace cowgpu::cli
+} // namespace cowgpu

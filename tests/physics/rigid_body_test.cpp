@@ -2,7 +2,7 @@
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/mesh/tensors.hpp"
-#include "host/physics/tensors.hpp"
+#include "host/physics/rigid_body.hpp"
 #include "host/spectrum/convert.hpp"
 #include "host/spectrum/mass_moments.hpp"
 #include "tests/support/meshes.hpp"
@@ -54,7 +54,7 @@ Fault fault_of(Call call) {
 } // namespace
 
 TEST_CASE("a box has the tensors of the textbook, and its edges for principal axes", "[tensors]") {
-  const MassTensors box = mass_tensors(body_of(test::box(Vec3(1, 2, 3), Vec3(5, -7, 11)), {}, 2));
+  const RigidBody box = rigid_body(body_of(test::box(Vec3(1, 2, 3), Vec3(5, -7, 11)), {}, 2));
   CHECK(box.mass == 12);
   CHECK(box.first_moment.norm() < 1e-14);
   CHECK((box.inertia().diagonal() - Vec3(13, 10, 5)).norm() < 1e-13);
@@ -72,7 +72,7 @@ TEST_CASE("a box has the tensors of the textbook, and its edges for principal ax
 TEST_CASE("an ellipsoid's inertia is m/5 (b^2 + c^2), which its tessellations approach by a factor of four a level",
           "[tensors]") {
   const auto error = [](const char* name) {
-    const MassTensors e = mass_tensors(body_of(load_mesh(name)));
+    const RigidBody e = rigid_body(body_of(load_mesh(name)));
     const double mass = 4.0 / 3 * 3.14159265358979323846 * 1 * 2 * 3;
     return difference(e.inertia(), mass / 5 * Vec3(13, 10, 5).asDiagonal().toDenseMatrix());
   };
@@ -84,7 +84,7 @@ TEST_CASE("an ellipsoid's inertia is m/5 (b^2 + c^2), which its tessellations ap
 TEST_CASE("coefficients of degree 0 to 2 and the trace hold the tensors of the mesh", "[tensors]") {
   for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.3, -0.2, 0.1)}) {
     const Body body = body_of(load_mesh("builtin:cow@2"), {"given", at}, 3);
-    const MassTensors mesh = mass_tensors(body);
+    const RigidBody mesh = rigid_body(body);
     CoefficientSet set = multipoles(body, 3);
     set.second_moment = *mesh.trace;
     ConversionTarget geodesy;
@@ -94,7 +94,7 @@ TEST_CASE("coefficients of degree 0 to 2 and the trace hold the tensors of the m
     geodesy.phase = Phase::none;
     geodesy.reference_radius = 7;
     for (const CoefficientSet& stored : {set, converted(set, geodesy)}) {
-      const MassTensors read = mass_tensors(stored);
+      const RigidBody read = rigid_body(stored);
       CHECK(read.mass == Approx(mesh.mass).epsilon(1e-14));
       CHECK((read.first_moment - mesh.first_moment).norm() < 1e-14 * mesh.mass * mesh.radius);
       CHECK(difference(read.quadrupole, mesh.quadrupole) < 1e-13);
@@ -112,23 +112,23 @@ TEST_CASE("coefficients of degree 0 to 2 and the trace hold the tensors of the m
 
 TEST_CASE("what has no inertia or is of no mass is refused by name", "[tensors]") {
   const CoefficientSet set = multipoles(body_of(test::box(Vec3(1, 2, 3))), 2);
-  CHECK_THROWS_WITH(mass_tensors(set).inertia(), Catch::Contains("second moment"));
-  CHECK(fault_of([&] { mass_tensors(set).second_moment(); }) == Fault::file_format);
+  CHECK_THROWS_WITH(rigid_body(set).inertia(), Catch::Contains("second moment"));
+  CHECK(fault_of([&] { rigid_body(set).second_moment(); }) == Fault::file_format);
   CoefficientSet surface = set;
   surface.kind = CoefficientKind::field;
-  CHECK(fault_of([&] { mass_tensors(surface); }) == Fault::file_format);
+  CHECK(fault_of([&] { rigid_body(surface); }) == Fault::file_format);
   ConversionTarget target;
   target.lmax = 1;
-  CHECK(fault_of([&] { mass_tensors(converted(set, target)); }) == Fault::file_format);
-  MassTensors nothing;
+  CHECK(fault_of([&] { rigid_body(converted(set, target)); }) == Fault::file_format);
+  RigidBody nothing;
   nothing.radius = 1;
   CHECK(fault_of([&] { about_centre(nothing); }) == Fault::bad_argument);
 }
 
 TEST_CASE("tensors about another point are brought to the centre of mass by Steiner's theorem", "[tensors]") {
-  const MassTensors own = mass_tensors(body_of(load_mesh("builtin:cow@2")));
-  const MassTensors there = mass_tensors(body_of(load_mesh("builtin:cow@2"), {"given", Vec3(0.5, 1, -0.25)}));
-  const MassTensors moved = about_centre(there);
+  const RigidBody own = rigid_body(body_of(load_mesh("builtin:cow@2")));
+  const RigidBody there = rigid_body(body_of(load_mesh("builtin:cow@2"), {"given", Vec3(0.5, 1, -0.25)}));
+  const RigidBody moved = about_centre(there);
   CHECK((*moved.origin - *own.origin).norm() < 1e-14);
   CHECK(moved.first_moment.norm() == 0);
   CHECK(difference(moved.inertia(), own.inertia()) < 4e-14);
@@ -137,10 +137,10 @@ TEST_CASE("tensors about another point are brought to the centre of mass by Stei
 }
 
 TEST_CASE("principal axes turn with the body, are right-handed, and say where they are not determined", "[tensors]") {
-  const MassTensors own = mass_tensors(body_of(load_mesh("builtin:cow@2")));
+  const RigidBody own = rigid_body(body_of(load_mesh("builtin:cow@2")));
   const Eigen::Matrix3d turn =
       (Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()) * Eigen::AngleAxisd(2.1, Vec3::UnitX())).toRotationMatrix();
-  const MassTensors turned = mass_tensors(body_of(test::rotated(load_mesh("builtin:cow@2"), turn)));
+  const RigidBody turned = rigid_body(body_of(test::rotated(load_mesh("builtin:cow@2"), turn)));
   const PrincipalAxes a = principal_axes(own), b = principal_axes(turned);
   CHECK((*a.moments - *b.moments).norm() < 1e-14 * a.moments->norm());
   for (int i = 0; i < 3; ++i) {
@@ -149,9 +149,9 @@ TEST_CASE("principal axes turn with the body, are right-handed, and say where th
   }
   CHECK(b.axes.determinant() == Approx(1).epsilon(1e-14));
   CHECK(difference(b.axes * b.moments->asDiagonal() * b.axes.transpose(), turned.inertia()) < 1e-14);
-  const PrincipalAxes cube = principal_axes(mass_tensors(body_of(test::box(Vec3(1, 1, 1)))));
+  const PrincipalAxes cube = principal_axes(rigid_body(body_of(test::box(Vec3(1, 1, 1)))));
   CHECK((cube.first_two_alike && cube.last_two_alike));
-  const PrincipalAxes plate = principal_axes(mass_tensors(body_of(test::box(Vec3(2, 2, 1)))));
+  const PrincipalAxes plate = principal_axes(rigid_body(body_of(test::box(Vec3(2, 2, 1)))));
   CHECK((plate.first_two_alike && !plate.last_two_alike));
 }
 
