@@ -217,7 +217,7 @@ def updated(shown, printed):
 def meshes_missing(program):
     """Names of the catalogue whose files are not on this machine."""
     listed = subprocess.run([program, "meshes", "--json"], capture_output=True, text=True, check=True)
-    return [mesh["name"] for mesh in json.loads(listed.stdout)["meshes"] if not mesh.get("file")]
+    return [mesh["name"] for mesh in json.loads(listed.stdout)["named"] if not mesh["path"]]
 
 
 def named(meshes, text):
