@@ -9,7 +9,8 @@ line `...` stands for lines that are left out. A command that does not end with 
 What a sample and the output may differ in:
   - what differs from run to run and between machines: the lists below and those of scripts/record_compare.py;
   - numbers with a point or an exponent, by one in the last digit that is printed, or from the 14th digit on;
-  - numbers below 1e-15 of the largest of their paragraph, which are nothing but rounding: any number of that kind will do.
+  - numbers below 1e-15 of the largest of their table, matrix or vector (neighbouring lines with two such numbers or more), which
+    are nothing but rounding: any other number of that kind will do.
 
 A block that names a mesh of the catalogue (benchmark, cgal:...) which is not on this machine is left out, and said so.
 
@@ -22,6 +23,7 @@ Exit codes: 0 all is as shown, 1 something differs, 2 usage, 3 a page or the pro
 
 import argparse
 import difflib
+import itertools
 import json
 import os
 import re
@@ -36,22 +38,25 @@ sys.dont_write_bytecode = True
 import record_compare  # noqa: E402
 
 LONGEST = 120  # seconds that a command may take
-ROUNDING = 1e-15  # of the largest number of a paragraph
+ROUNDING = 1e-15  # of the largest number of a table
 DIGITS = 14  # that different machines agree in
 
 # Parts of lines that differ between machines. What the groups hold stays, and the rest of the match is left out.
 OF_THE_MACHINE = [
-    (r"^((?:\w+ )?device: ).*", "the device and its driver"),
-    (r"^(accuracy: .*\(worst: )\d+", "the degree of the largest rounding error"),
-    (r"^(accuracy: .*) \S+ of degree \d+", "a rounding error"),
-    (r"^(accuracy: .* known to )\S+", "a rounding error"),
-    (r"^(accuracy: .* zero within )\S+", "a rounding error"),
-    (r"(, )\S+( of its estimated error)", "a rounding error"),
-    (r"^(  (?:max_error|rms_error) +)\S+", "a rounding error"),
+    (r"^((?: *\w+ )?device: ).*", "the device and its driver"),
+    (r"^(  device  +).*", "the device and its driver"),
+    (r"^(\d+: |cpu: |   double precision yes, |   \d+ threads?, ).*", "what `devices` lists"),
+    (r"^((?:accuracy|estimate): .* known to )\S+( .*\(worst: )\d+", "rounding errors"),
+    (r"^((?:accuracy|estimate): .* zero within )\S+", "rounding errors"),
+    (r"^(accuracy: .*: )\S+ of degree \d+, \S+( of its estimated error)", "rounding errors"),
+    (r"^(  (?:max_error|rms_error) +)\S+", "rounding errors"),
+    (r"^(worst degree over the norms beside it: )\S+?(?=,|$)", "rounding errors"),
+    (r"^(  \S.*?\S)  +(?:[\d.]+e-\d+)? +[\d.]+ +\d+( +\d+  (?:passed|FAILED))$", "rounding errors that `validate` finds"),
 ]
 PATTERNS = record_compare.PATTERNS + record_compare.TEXT_PATTERNS + [re.compile(p, re.M) for p, _ in OF_THE_MACHINE]
 NUMBER = record_compare.NUMBER
-IMAGINARY = re.compile(r"([+-]) (?=\d[\d.]*(?:e[+-]\d+)? i\b)")  # whose sign is that of a number
+REAL = r"\d[\d.]*(?:e[+-]\d+)?"
+COMPLEX = re.compile(rf"([+-]?{REAL}) ?([+-]) ?({REAL}) ?i\b")  # whose parts are numbers with signs
 
 
 class Step:
@@ -88,7 +93,7 @@ def steps_of(lines):
 
 
 def comparable(line):
-    return IMAGINARY.sub(r"\1", record_compare.without(line, PATTERNS)).rstrip()
+    return COMPLEX.sub(r"\1 \2\3 i", record_compare.without(line, PATTERNS)).rstrip()
 
 
 def unit(word):
@@ -122,13 +127,14 @@ def same_line(shown, printed, scale):
 
 
 def scales_of(lines):
-    """For each line the largest number, of those that are not counts, of its paragraph."""
-    scales, start = [], 0
-    for end in range(len(lines) + 1):
-        if end == len(lines) or not lines[end].strip():
-            numbers = [w for line in lines[start:end] for w in NUMBER.findall(comparable(line)) if record_compare.is_real(w)]
-            scales += [max([abs(float(w)) for w in numbers], default=0.0)] * (end - start + 1)
-            start = end + 1
+    """For each line the largest number, of those that are not counts, of its table; 0 where it stands in none."""
+    rows = [[abs(float(w)) for w in NUMBER.findall(comparable(line)) if record_compare.is_real(w)] for line in lines]
+    scales = [0.0] * len(lines)
+    for in_table, group in itertools.groupby(range(len(lines)), key=lambda i: len(rows[i]) >= 2):
+        places = list(group)
+        if in_table:
+            for i in places:
+                scales[i] = max(max(rows[j]) for j in places)
     return scales
 
 
@@ -313,10 +319,11 @@ def check_links(page, options):
                 problems.append(f"{shown_path(page)}, line {number}: {target.name} has no heading #{fragment}")
     if options is None:
         return problems
+    about_benchmarks = page.parent.name == "bench" and page.name != "README.md"
     for number, line in enumerate(text.split("\n"), 1):
         code = re.findall(r"`([^`]+)`", line) if not line.startswith(("$ ", "    ")) else [line]
         for span in code:
-            if re.match(r"--\w|(\$ +)?(\./)?cowgpu ", span.strip()):
+            if re.match(r"(\$ +)?(\./)?cowgpu ", span.strip()) or (span.startswith("--") and not about_benchmarks):
                 for option in re.findall(r"(?<![\w-])--[a-z][a-z0-9-]*", span):
                     if option not in options:
                         problems.append(f"{shown_path(page)}, line {number}: the program has no option {option}")
