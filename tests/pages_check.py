@@ -55,6 +55,7 @@ OF_THE_MACHINE = [
 ]
 PATTERNS = record_compare.PATTERNS + record_compare.TEXT_PATTERNS + [re.compile(p, re.M) for p, _ in OF_THE_MACHINE]
 NUMBER = record_compare.NUMBER
+OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
 REAL = r"\d[\d.]*(?:e[+-]\d+)?"
 COMPLEX = re.compile(rf"([+-]?{REAL}) ?([+-]) ?({REAL}) ?i\b")  # whose parts are numbers with signs
 
@@ -304,6 +305,26 @@ def headings_of(page):
     return {anchor(h) for h in re.findall(r"^#+ (.*)$", without_blocks(page.read_text(encoding="utf-8")), re.M)}
 
 
+class Options:
+    """What options the program has."""
+
+    def __init__(self, program):
+        self.program, self.found = program, {}
+
+    def of(self, *command):
+        if command not in self.found:
+            words = [*command, "--help"] if command else ["man"]
+            text = subprocess.run([self.program, *words], capture_output=True, text=True, check=False).stdout
+            self.found[command] = set(OPTION.findall(text.replace("\\-", "-")))
+        return self.found[command]
+
+    def missing(self, code):
+        """The options in a piece of code that its command, or without a command the program, does not have."""
+        command = re.match(r"(?:\$ +)?(?:\./)?cowgpu +([a-z]+)(?: +(analyse|synthesise|roundtrip)\b)?", code)
+        known = self.of(*(w for w in command.groups() if w)) if command else self.of()
+        return [option for option in OPTION.findall(code) if option not in known]
+
+
 def check_links(page, options):
     problems = []
     text = page.read_text(encoding="utf-8")
@@ -317,22 +338,14 @@ def check_links(page, options):
                 problems.append(f"{shown_path(page)}, line {number}: the link {link} leads to nothing")
             elif fragment and fragment not in headings_of(target):
                 problems.append(f"{shown_path(page)}, line {number}: {target.name} has no heading #{fragment}")
-    if options is None:
-        return problems
     about_benchmarks = page.parent.name == "bench" and page.name != "README.md"
     for number, line in enumerate(text.split("\n"), 1):
-        code = re.findall(r"`([^`]+)`", line) if not line.startswith(("$ ", "    ")) else [line]
+        code = re.findall(r"`([^`]+)`", line) if not line.startswith(("$ ", "    ")) else [line.strip()]
         for span in code:
-            if re.match(r"(\$ +)?(\./)?cowgpu ", span.strip()) or (span.startswith("--") and not about_benchmarks):
-                for option in re.findall(r"(?<![\w-])--[a-z][a-z0-9-]*", span):
-                    if option not in options:
-                        problems.append(f"{shown_path(page)}, line {number}: the program has no option {option}")
+            if re.match(r"(\$ +)?(\./)?cowgpu ", span) or (span.startswith("--") and not about_benchmarks):
+                for option in options.missing(span):
+                    problems.append(f"{shown_path(page)}, line {number}: `{span}`: the program has no option {option} there")
     return problems
-
-
-def options_of(program):
-    manual = subprocess.run([program, "man"], capture_output=True, text=True, check=True).stdout
-    return set(re.findall(r"--[a-z][a-z0-9-]*", manual.replace("\\-", "-")))
 
 
 # --- Command line -------------------------------------------------------------------------------------------------------
@@ -347,13 +360,13 @@ def pages_of_project():
     return [ROOT / name for name in listed.stdout.split()]
 
 
-def main():
+def main(words):
     parser = argparse.ArgumentParser(usage=__doc__.split("\n", 1)[0].partition(": ")[0])
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/host/cowgpu")
     parser.add_argument("--update", action="store_true")
     parser.add_argument("--links", action="store_true")
     parser.add_argument("pages", metavar="PAGE", type=Path, nargs="*")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(words)
     program = arguments.program.resolve()
     pages = [p.resolve() for p in arguments.pages] or pages_of_project()
     for path in [program, *pages]:
@@ -361,7 +374,7 @@ def main():
             print(f"pages_check.py: {path} is not there", file=sys.stderr)
             return 3
     problems, left_out = [], []
-    options = options_of(program) if arguments.links else None
+    options = Options(program)
     for page in pages:
         try:
             if arguments.links:
@@ -382,4 +395,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

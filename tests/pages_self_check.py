@@ -1,19 +1,25 @@
 #!/usr/bin/env python3
 """pages_self_check.py SCRIPT: tests/pages_check.py finds samples that are wrong, and lets pass what may differ."""
 
+import contextlib
+import importlib.util
+import io
 import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-SCRIPT = sys.argv[1]
+sys.dont_write_bytecode = True
+specification = importlib.util.spec_from_file_location("pages_check", sys.argv[1])
+pages_check = importlib.util.module_from_spec(specification)
+specification.loader.exec_module(pages_check)
 
 # What the program under test prints. It knows one mesh, which is not on this machine.
 PROGRAM = r"""#!/bin/sh
-case "$1" in
-  meshes) echo '{"named": [{"name": "benchmark", "path": null}]}' ;;
-  man) printf '.B \\-\\-lmax\n' ;;
+case "$*" in
+  meshes\ --json) echo '{"named": [{"name": "benchmark", "path": null}]}' ;;
+  man) printf '.B \\-\\-lmax, \\-\\-other\n' ;;
+  expand\ --help) echo '  --lmax INT' ;;
   fail) echo "cowgpu: error" >&2; exit 3 ;;
   write) echo kept > file ;;
   *) cat <<'END'
@@ -77,16 +83,17 @@ $ echo $?
 """
 
 
-def checked(page, *options, start=PAGE):
+def checked(page, *options):
     """Exit code, what is printed, and the page afterwards."""
     with tempfile.TemporaryDirectory() as folder:
         program, file = Path(folder) / "program", Path(folder) / "page.md"
         program.write_text(PROGRAM)
         os.chmod(program, 0o755)
         file.write_text(page)
-        run = subprocess.run([sys.executable, SCRIPT, "--program", program, *options, file], capture_output=True, text=True,
-                             check=False)
-        return run.returncode, run.stdout + run.stderr, file.read_text()
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
+            code = pages_check.main(["--program", str(program), *options, str(file)])
+        return code, out.getvalue(), file.read_text()
 
 
 def changed(old, new):
@@ -152,11 +159,13 @@ code, out, page = checked(PAGE.replace("1.187 s", "12.5 s"), "--update")
 assert (code, out, page) == (0, "", PAGE.replace("1.187 s", "12.5 s")), (code, out, page)
 
 # --links: links, headings, options.
-code, out, _ = checked(PAGE, "--links")
-assert code == 0 and not out, (code, out)
+for page in (PAGE, changed("`cowgpu expand --lmax 8`", "`--other`")):
+    code, out, _ = checked(page, "--links")
+    assert code == 0 and not out, (code, out)
 for old, new, word in (("(page.md)", "(pages.md)", "the link pages.md leads to nothing"),
                        ("#a-page", "#no-page", "has no heading #no-page"),
                        ("`cowgpu expand --lmax 8`", "`cowgpu expand --lmux 8`", "no option --lmux"),
+                       ("`cowgpu expand --lmax 8`", "`cowgpu expand --other`", "no option --other"),
                        ("`cowgpu expand --lmax 8`", "`--lmux`", "no option --lmux")):
     code, out, _ = checked(changed(old, new), "--links")
     assert code == 1 and word in out, (code, out, word)
