@@ -107,4 +107,15 @@ std::vector<Comparison> beside_paper(const TipResult& found, const Monitor& moni
   return rows;
 }
 
+std::vector<Comparison> potential_beside_paper() {
+  std::vector<Comparison> rows;
+  for (const int l : {0, 2}) {
+    const double factor = 4 * std::numbers::pi / (2 * l + 1);
+    rows.push_back({fmt::format("factor of G Q_lm / r^(l+1), l = {}", l), factor, std::sqrt(factor),
+                    l == 0 ? "Q_00 = M/sqrt(4 pi) must give -G M/r: 4 pi/(2l + 1), not its square root"
+                           : "the same for the quadrupole"});
+  }
+  return rows;
+}
+
 } // namespace cowgpu
