@@ -45,8 +45,10 @@ struct PotentialResult {
   bool radius_known() const { return radius_note.empty(); }
 };
 
+/// In SI where units are stated, else with Newton's or Coulomb's constant as 1.
 FieldUnits field_units(const PotentialResult& result);
 
+/// What `cowgpu potential` shows of it: rows, tables and notes with their units.
 /// With a table of the points where they are no more than `most_points`.
 physics::Findings findings(const PotentialResult& result, std::size_t most_points);
 
@@ -61,6 +63,7 @@ struct SeriesErrorsResult {
   physics::SeriesErrors errors;
 };
 
+/// What `cowgpu potential --errors` shows of it: rows, tables and notes with their units.
 physics::Findings findings(const SeriesErrorsResult& result);
 
 } // namespace cowgpu
