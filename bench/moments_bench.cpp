@@ -65,7 +65,7 @@ struct Path {
   double peak = 0, first = 0; // first: seconds of the last run that was not timed
   std::vector<double> wall, kernel, setup;
   RunReport report;
-  Coefficients result;
+  Multipoles result;
 
   void clear() {
     wall.clear();

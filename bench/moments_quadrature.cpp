@@ -15,16 +15,16 @@ namespace cowgpu::bench {
 namespace {
 
 // Factors of the recursion P_lm = a (cos(theta) P_{l-1,m} - b P_{l-2,m}) of orthonormal associated Legendre functions
-// with the Condon-Shortley phase (DLMF 14.10.3, normalised), in the order of Coefficients; on the diagonal `a` is the
+// with the Condon-Shortley phase (DLMF 14.10.3, normalised), sorted by l, then m; on the diagonal `a` is the
 // factor of -sin(theta) P_{m-1,m-1}.
 struct LegendreFactors {
   std::vector<double> a, b;
 
-  explicit LegendreFactors(int lmax) : a(Coefficients::count(lmax)), b(a.size()) {
+  explicit LegendreFactors(int lmax) : a(Multipoles::count(lmax)), b(a.size()) {
     for (int l = 0; l <= lmax; ++l)
       for (int m = 0; m <= l; ++m) {
         const double ll = double(l) * l, mm = double(m) * m, below = double(l - 1) * (l - 1);
-        const std::size_t i = Coefficients::index(l, m);
+        const std::size_t i = Multipoles::by_degree(l, m);
         if (m == l) {
           a[i] = l == 0 ? 0 : std::sqrt((2.0 * l + 1) / (2.0 * l));
         } else {
@@ -32,7 +32,7 @@ struct LegendreFactors {
           b[i] = std::sqrt((below - mm) / (4 * below - 1));
         }
       }
-    for (int m = 0; m < lmax; ++m) b[Coefficients::index(m + 1, m)] = 0;
+    for (int m = 0; m < lmax; ++m) b[Multipoles::by_degree(m + 1, m)] = 0;
   }
 };
 
@@ -53,15 +53,15 @@ public:
     double power = weight;
     for (int l = 1; l <= lmax_; ++l) {
       power *= r;
-      const double* a = &factors_.a[Coefficients::index(l, 0)];
-      const double* b = &factors_.b[Coefficients::index(l, 0)];
-      const double* one = p + Coefficients::index(l - 1, 0);
-      const double* two = l > 1 ? p + Coefficients::index(l - 2, 0) : p;
-      double* row = p + Coefficients::index(l, 0);
+      const double* a = &factors_.a[Multipoles::by_degree(l, 0)];
+      const double* b = &factors_.b[Multipoles::by_degree(l, 0)];
+      const double* one = p + Multipoles::by_degree(l - 1, 0);
+      const double* two = l > 1 ? p + Multipoles::by_degree(l - 2, 0) : p;
+      double* row = p + Multipoles::by_degree(l, 0);
       for (int m = 0; m < l - 1; ++m) row[m] = a[m] * (c * one[m] - b[m] * two[m]);
       row[l - 1] = a[l - 1] * c * one[l - 1];
       row[l] = -a[l] * s * one[l - 1];
-      double* sum = &sum_[Coefficients::index(l, 0)];
+      double* sum = &sum_[Multipoles::by_degree(l, 0)];
       for (int m = 0; m <= l; ++m) sum[m] += power * row[m];
     }
   }
@@ -71,7 +71,7 @@ public:
     const std::complex<double> turn(cosine, sine);
     std::complex<double> phase = 1;
     for (int m = 0; m <= lmax_; ++m) {
-      for (int l = m; l <= lmax_; ++l) to[Coefficients::index(l, m)] += sum_[Coefficients::index(l, m)] * phase;
+      for (int l = m; l <= lmax_; ++l) to[Multipoles::by_degree(l, m)] += sum_[Multipoles::by_degree(l, m)] * phase;
       phase *= turn;
     }
   }
@@ -147,7 +147,7 @@ LatticeMoments lattice_moments(const MomentProblem& problem, double spacing, uns
   const Axis xs(box.min.x(), box.max.x(), spacing), ys(box.min.y(), box.max.y(), spacing),
       zs(box.min.z(), box.max.z(), spacing);
   const LegendreFactors factors(problem.lmax);
-  const std::size_t count = Coefficients::count(problem.lmax);
+  const std::size_t count = Multipoles::count(problem.lmax);
 
   // A task is a slab of columns of one x; its sums and its number of cells.
   std::vector<std::vector<std::complex<double>>> sums(std::size_t(xs.count));
@@ -194,16 +194,13 @@ LatticeMoments lattice_moments(const MomentProblem& problem, double spacing, uns
   LatticeMoments result;
   result.spacing = spacing;
   result.columns = std::uint64_t(xs.count) * std::uint64_t(ys.count);
-  Coefficients& moments = result.moments;
-  moments.lmax = problem.lmax;
-  moments.origin = problem.origin;
-  moments.reference_radius = problem.reference_radius;
-  moments.density = problem.density;
-  moments.values.resize(count);
+  Multipoles& moments = result.moments;
+  moments = Multipoles(problem);
   const double cell_mass = problem.density * spacing * spacing * spacing;
   for (std::size_t ix = 0; ix < sums.size(); ++ix) {
     result.cells += cells[ix];
-    for (std::size_t i = 0; i < count; ++i) moments.values[i] += cell_mass * sums[ix][i];
+    for (int l = 0; l <= problem.lmax; ++l)
+      for (int m = 0; m <= l; ++m) moments(l, m) += cell_mass * sums[ix][Multipoles::by_degree(l, m)];
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

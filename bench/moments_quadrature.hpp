@@ -9,7 +9,7 @@ namespace cowgpu::bench {
 
 /// Moments by quadrature, and what they took.
 struct LatticeMoments {
-  Coefficients moments;
+  Multipoles moments;
   double spacing = 0;        ///< side of a cell, mesh length units
   std::uint64_t columns = 0; ///< lattice columns along z
   std::uint64_t cells = 0;   ///< cells whose midpoint is inside

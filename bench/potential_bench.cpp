@@ -29,16 +29,15 @@ struct Options {
 };
 
 // Moments of no body in particular, that fall like 1/l.
-Coefficients moments(int lmax) {
-  Coefficients q;
-  q.lmax = lmax;
+Multipoles moments(int lmax) {
+  Multipoles q(lmax);
   q.reference_radius = radius;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int l = 0; l <= lmax; ++l)
     for (int m = 0; m <= l; ++m) {
       const double re = uniform(random), im = uniform(random);
-      q.values.emplace_back(re / (l + 1), m == 0 ? 0 : im / (l + 1));
+      q(l, m) = {re / (l + 1), m == 0 ? 0 : im / (l + 1)};
     }
   return q;
 }
@@ -71,7 +70,7 @@ public:
     for (const auto& backend : backends_) say("{} ({})\n", backend->facts().name, backend->facts().driver);
     const std::vector<Vec3> points = places(options_.points);
     for (const int lmax : options_.degrees) {
-      const Coefficients q = moments(lmax);
+      const Multipoles q = moments(lmax);
       const reference::ExteriorPotential<long double> reference(q);
       std::vector<reference::PotentialAt<long double>> truth;
       const std::size_t some = std::min(verified, points.size());

@@ -1,13 +1,13 @@
 // The verbs of the engine. One interface, two implementations: host/cpu and host/gpu.
 #pragma once
 
-#include "host/coefficients.hpp"
 #include "host/device_facts.hpp"
 #include "host/distance_field.hpp"
 #include "host/flow.hpp"
 #include "host/image.hpp"
 #include "host/moment_problem.hpp"
 #include "host/monitor.hpp"
+#include "host/multipoles.hpp"
 #include "host/potential.hpp"
 #include "host/render.hpp"
 #include "host/run_report.hpp"
@@ -32,7 +32,7 @@ public:
   /// Exact multipole moments of the signed tetrahedra (origin, face): the mathematics stands in host/plan/moments.hpp. Throws
   /// Error(bad_argument) for a problem out of range, too_large, device_failed, device_lost, interrupted. The same problem
   /// on the same device gives the same bits.
-  virtual Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report = nullptr) = 0;
+  virtual Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report = nullptr) = 0;
 
   /// Upper bound of the memory moments() allocates, its result included.
   virtual MemoryNeed moments_memory(const MomentProblem& problem) const = 0;

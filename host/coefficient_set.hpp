@@ -16,8 +16,8 @@ namespace cowgpu {
 /// What coefficients are of. Each kind names a field on the unit sphere, f = sum a_lm Y_lm (Y_lm as in
 /// SphereCoefficients); the numbers in a convention are coefficients of that field (host/convention.hpp).
 enum class CoefficientKind {
-  field, ///< a_lm of any field
-  multipoles, ///< mass multipoles: a_lm = conj(Q_lm) / R^l, Q_lm as in Coefficients; the complex form holds Q_lm / R^l itself
+  field,      ///< a_lm of any field
+  multipoles, ///< mass multipoles: a_lm = conj(Q_lm) / R^l, Q_lm as in Multipoles; the complex form holds Q_lm / R^l itself
   /// the gravitational potential V = GM/r sum_lm (R/r)^l (C_lm cos m phi + S_lm sin m phi) K_lm P_lm(cos theta) of geodesy:
   ///   a_lm = 4 pi conj(Q_lm) / ((2l + 1) M R^l), f = V R / GM at r = R
   potential,
@@ -26,6 +26,10 @@ enum class CoefficientKind {
 /// "field", "multipoles", "potential".
 std::string_view name(CoefficientKind kind);
 std::optional<CoefficientKind> kind_named(std::string_view word);
+
+/// Name of the mass multipoles among the expansions of a result; surfaces have the names of their maps
+/// (host/map/map_method.hpp).
+inline constexpr const char* mass_expansion = "mass";
 
 /// The length and mass unit of a body whose units nobody stated.
 inline constexpr std::string_view mesh_length_unit = "of the mesh", mesh_mass_unit = "density times cubed length";

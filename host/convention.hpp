@@ -1,8 +1,6 @@
 // Conventions of spherical-harmonic coefficients, and the way between them.
 #pragma once
 
-#include "host/sphere_coefficients.hpp"
-
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -35,34 +33,21 @@ std::optional<Normalisation> normalisation_named(std::string_view word);
 std::optional<Phase> phase_named(std::string_view word);
 std::optional<Form> form_named(std::string_view word);
 
-/// A convention of real coefficients. The default fits SphereCoefficients.
+/// A convention of coefficients C_lm, S_lm of real fields
+///   f = sum_{l, m >= 0} s_m K_lm P_lm(cos theta) (C_lm cos m phi + S_lm sin m phi),
+/// s_m = (-1)^m with the Condon-Shortley phase and 1 without it. With a_lm as in SphereCoefficients, which fits the default,
+/// C_lm - i S_lm = k_lm a_lm, and
+///   k_lm = t_m sqrt(2 - delta_m0) N_l, t_m = 1 with the phase and (-1)^m without,
+///   N_l = 1 (orthonormal), 1 / sqrt(4 pi) (4 pi), sqrt((2l + 1) / 4 pi) (Schmidt),
+///   unnormalised: sqrt((2 - delta_m0) (2l + 1) / 4 pi * (l - m)! / (l + m)!) in the place of N_l.
+/// Unnormalised coefficients underflow from about degree 150 on, and their harmonics overflow there.
 struct Convention {
   Normalisation normalisation = Normalisation::orthonormal;
   Phase phase = Phase::condon_shortley;
   friend bool operator==(const Convention&, const Convention&) = default;
 };
 
-/// Coefficients C_lm, S_lm of real fields
-///   f = sum_{l, m >= 0} s_m K_lm P_lm(cos theta) (C_lm cos m phi + S_lm sin m phi),
-/// s_m = (-1)^m with the Condon-Shortley phase and 1 without it. Order as in SphereCoefficients; S_l0 = 0.
-struct RealCoefficients {
-  int lmax = 0;
-  int fields = 1;
-  Convention convention;
-  std::vector<double> cosine, sine; ///< fields * SphereCoefficients::count(lmax) each
-
-  RealCoefficients() = default;
-  RealCoefficients(int lmax_, int fields_, Convention convention_)
-      : lmax(lmax_), fields(fields_), convention(convention_),
-        cosine(std::size_t(fields_) * SphereCoefficients::count(lmax_)), sine(cosine.size()) {}
-
-  /// Where (l, m) of field f stands in both.
-  std::size_t index(int f, int l, int m) const {
-    return std::size_t(f) * SphereCoefficients::count(lmax) + SphereCoefficients::index(lmax, l, m);
-  }
-};
-
-/// The part t_m g_m of k_lm (below) that depends on the order alone: t_m = 1 with the phase and (-1)^m without; g_m =
+/// The part t_m g_m of k_lm (Convention) that depends on the order alone: t_m = 1 with the phase and (-1)^m without; g_m =
 /// sqrt(2 - delta_m0) of real coefficients, 2 - delta_m0 of real unnormalised ones, 1 of complex ones.
 long double order_factor(Convention convention, Form form, int m);
 
@@ -81,18 +66,5 @@ private:
   long double first_ = 1, quotient_ = 1; // 1 / (2m)!, (l - m)! / (l + m)!
   int order_ = 0;
 };
-
-/// C_lm - i S_lm = k_lm a_lm with
-///   k_lm = t_m sqrt(2 - delta_m0) N_l, t_m = 1 with the phase and (-1)^m without,
-///   N_l = 1 (orthonormal), 1 / sqrt(4 pi) (4 pi), sqrt((2l + 1) / 4 pi) (Schmidt),
-///   unnormalised: sqrt((2 - delta_m0) (2l + 1) / 4 pi * (l - m)! / (l + m)!) in the place of N_l.
-/// There and back is right to 2 units in the last place. Imaginary parts of a_l0 are ignored.
-///
-/// Throws Error(bad_argument) where a coefficient that is not zero has no normal double in the convention: unnormalised
-/// coefficients underflow from about degree 150 on, and their harmonics overflow there; the others always fit, unless a
-/// value is within a factor 100 of the largest double.
-RealCoefficients to_real(const SphereCoefficients& coefficients, Convention convention);
-/// The inverse, with the same error.
-SphereCoefficients to_complex(const RealCoefficients& coefficients);
 
 } // namespace cowgpu

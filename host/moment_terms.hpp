@@ -1,16 +1,16 @@
 // Moments by a second recursion, and how large the triangles' shares in them are.
 #pragma once
 
-#include "host/coefficients.hpp"
 #include "host/moment_problem.hpp"
 #include "host/monitor.hpp"
+#include "host/multipoles.hpp"
 
 #include <vector>
 
 namespace cowgpu {
 
 struct MomentTerms {
-  Coefficients sum; ///< Q_lm / R^l
+  Multipoles sum; ///< Q_lm / R^l
   /// A_l of each degree, with |t_l| the norm over all orders of a triangle's share in Q_lm / R^l, and s_l what it would be
   /// were nothing cancelled within the triangle:
   ///   A_l^2 = sum over triangles of |t_l|^2 + (s_l / (8 + l))^2,  s_l = sqrt((2 l + 1) / 4 pi) density / R^l times

@@ -1,7 +1,7 @@
 // Input and output of the verb `potential`.
 #pragma once
 
-#include "host/coefficients.hpp"
+#include "host/multipoles.hpp"
 #include "host/types.hpp"
 
 #include <Eigen/Core>
@@ -26,7 +26,7 @@ enum class Derivatives { none = 0, first = 1, second = 2 };
 
 /// Input of the verb `potential`: V(x) = integral of density(y) / |x - y| outside a body, by its moments.
 struct PotentialProblem {
-  const Coefficients& moments;
+  const Multipoles& moments;
   std::span<const Vec3> points; ///< seen from the moments' origin, their length unit; no nearer to it than R (to 1e-9)
   int lmax = 0;                 ///< 0 ... min(moments.lmax, largest_potential_degree)
   Derivatives derivatives = Derivatives::second;

@@ -28,6 +28,11 @@ struct SphereCoefficients {
   /// Coefficients of a field: (lmax + 1)(lmax + 2) / 2.
   static constexpr std::size_t count(int lmax) { return std::size_t(lmax + 1) * std::size_t(lmax + 2) / 2; }
 
+  /// Where (l, m) stands among numbers sorted by l, then m: the order of work that goes degree by degree.
+  static constexpr std::size_t by_degree(int l, int m) {
+    return std::size_t(l) * (std::size_t(l) + 1) / 2 + std::size_t(m);
+  }
+
   std::span<std::complex<double>> field(int f) {
     return std::span(values).subspan(std::size_t(f) * count(lmax), count(lmax));
   }

@@ -5,6 +5,7 @@
 #include "host/cli/console.hpp"
 #include "host/convention.hpp"
 #include "host/mesh/body.hpp"
+#include "host/requests/memory.hpp"
 #include "host/types.hpp"
 
 #include "host/cli/command_line.hpp"
@@ -73,9 +74,6 @@ std::unique_ptr<Backend> open_backend(const Common& common, std::string* note);
 /// Adds --grid and --lmax as the transforms have them; `lmax` stays as it is where the option is not given.
 void add_grid_option(Command& command, std::string& grid, const char* what);
 void add_degree_option(Command& command, int& lmax, const char* what);
-
-/// Throws Error(too_large) with `advice` where this machine has not so much memory.
-void check_memory(const MemoryNeed& need, const Backend& backend, const char* advice);
 
 /// Throws Error(bad_argument) where the output's name leads to the file that is read.
 void refuse_same_file(const std::string& input, const std::string& output);

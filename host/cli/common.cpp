@@ -55,15 +55,6 @@ void add_degree_option(Command& command, int& lmax, const char* what) {
   command.add_option("--lmax", lmax, what)->check(in_range(0, largest_grid_degree))->type_name("L");
 }
 
-void check_memory(const MemoryNeed& need, const Backend& backend, const char* advice) {
-  const DeviceFacts cpu = make_cpu_backend(1)->facts();
-  const bool shared = backend.facts().type == "software" || backend.facts().type == "integrated";
-  const std::uint64_t host = need.host + (shared ? need.device : 0);
-  if (cpu.memory && host > cpu.memory)
-    throw Error(Fault::too_large, fmt::format("this needs {} MiB of memory and the machine has {} MiB; {}", host >> 20,
-                                              cpu.memory >> 20, advice));
-}
-
 void refuse_same_file(const std::string& input, const std::string& output) {
   std::error_code none;
   if (std::filesystem::equivalent(input, output, none))

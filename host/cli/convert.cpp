@@ -2,13 +2,11 @@
 
 #include "host/cli/quantities.hpp"
 #include "host/error.hpp"
-#include "host/io/coefficient_file.hpp"
 #include "host/io/coefficient_metadata.hpp"
-#include "host/spectrum/convert.hpp"
+#include "host/requests/convert.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 
 namespace cowgpu::cli {
@@ -26,25 +24,6 @@ struct Options {
   std::string length_unit;
 };
 
-// What is asked for, and what the output's format asks for where nothing is.
-ConversionTarget target_of(const Options& options, const CoefficientSet& set) {
-  const CoefficientFormat format = coefficient_format(options.output);
-  const bool gfc = format == CoefficientFormat::gfc, text = gfc || format == CoefficientFormat::shtools;
-  ConversionTarget target;
-  target.reference_radius = options.reference_radius;
-  if (!options.kind.empty()) target.kind = kind_named(options.kind);
-  if (!options.form.empty()) target.form = form_named(options.form);
-  if (!options.normalisation.empty()) target.normalisation = normalisation_named(options.normalisation);
-  if (!options.phase.empty()) target.phase = phase_named(options.phase);
-  if (text && set.kind == CoefficientKind::multipoles && !target.kind) target.kind = CoefficientKind::potential;
-  if (!target.form && format != CoefficientFormat::json && format != CoefficientFormat::csv) target.form = Form::real;
-  const bool geodesy = target.kind == CoefficientKind::potential && set.kind == CoefficientKind::multipoles;
-  if (!target.normalisation && (geodesy || (gfc && set.convention.normalisation != Normalisation::unnormalised)))
-    target.normalisation = Normalisation::four_pi;
-  if (!target.phase && (geodesy || gfc)) target.phase = Phase::none;
-  return target;
-}
-
 EulerAngles angles_of(const Options& options) {
   const auto angles = parse_point(options.rotation);
   if (!angles)
@@ -52,54 +31,6 @@ EulerAngles angles_of(const Options& options) {
                 fmt::format("--rotate {}: it must be three numbers ALPHA,BETA,GAMMA", options.rotation));
   const long double unit = options.angle_unit == "degrees" ? std::numbers::pi_v<long double> / 180 : 1;
   return {double(angles->x() * unit), double(angles->y() * unit), double(angles->z() * unit)};
-}
-
-// Where the file does not say its convention, what the user says of it. What it does say counts: an option may repeat it only.
-void state_convention(const Options& options, CoefficientSet& set) {
-  if (options.input_normalisation.empty() && options.input_phase.empty()) return;
-  const auto take = [&](const char* option, bool stated, auto given, auto& value) {
-    if (!given) return;
-    if (stated && *given != value)
-      throw Error(Fault::bad_argument,
-                  fmt::format("{0} {1}: {2} says {3} itself, and the option is for files that do not say it; leave it "
-                              "out, or say {3}",
-                              option, name(*given), options.input, name(value)));
-    value = *given;
-  };
-  const std::string assumed = assumed_convention(set);
-  take("--input-normalisation", set.normalisation_stated, normalisation_named(options.input_normalisation),
-       set.convention.normalisation);
-  take("--input-phase", set.phase_stated, phase_named(options.input_phase), set.convention.phase);
-  if (assumed.empty()) return;
-  std::erase(set.notes, assumed);
-  const auto by = [](bool stated, const std::string& option) {
-    return stated ? "as the file says" : option.empty() ? "as was assumed" : "as the option says";
-  };
-  set.notes.push_back(
-      fmt::format("IN was taken as {}, {}, and {} the Condon-Shortley phase, {}", name(set.convention.normalisation),
-                  by(set.normalisation_stated, options.input_normalisation),
-                  set.convention.phase == Phase::none ? "without" : "with", by(set.phase_stated, options.input_phase)));
-}
-
-// Lengths are metres and densities kg/m^3.
-void state_si(CoefficientSet& set) {
-  set.length_unit = "m";
-  set.mass_unit = "kg";
-  set.gravitational_constant = gravitational_constant_si;
-  if (set.kind == CoefficientKind::potential && set.mass) set.gm = *set.mass * gravitational_constant_si;
-}
-
-// The sphere that holds the body, where the file does not say it.
-void state_radius(double radius, const std::string& file, CoefficientSet& set) {
-  if (set.kind == CoefficientKind::field)
-    throw Error(Fault::bad_argument,
-                fmt::format("--brillouin-radius is of a body, and {} holds coefficients of other fields", file));
-  if (!(radius > 0) || !std::isfinite(radius))
-    throw Error(Fault::bad_argument, fmt::format("--brillouin-radius {}: it must be above 0", radius));
-  if (set.brillouin_radius && *set.brillouin_radius != radius)
-    throw Error(Fault::bad_argument,
-                fmt::format("--brillouin-radius {}: {} says that it is {}", radius, file, *set.brillouin_radius));
-  set.brillouin_radius = radius;
 }
 
 std::string described(const CoefficientSet& set) {
@@ -115,41 +46,40 @@ std::string described(const CoefficientSet& set) {
   return text;
 }
 
+ConvertRequest request_of(const Options& options, CoefficientFormat format) {
+  ConvertRequest request;
+  request.input = options.input;
+  request.of = options.of;
+  request.field = options.field;
+  request.input_normalisation = normalisation_named(options.input_normalisation);
+  request.input_phase = phase_named(options.input_phase);
+  request.brillouin_radius = options.brillouin_radius;
+  request.metres = stated_metres(options.length_unit);
+  request.si = options.si;
+  if (!options.rotation.empty()) request.rotation = angles_of(options);
+  request.rotation_text = options.rotation + " " + options.angle_unit;
+  request.target = {kind_named(options.kind),   form_named(options.form), normalisation_named(options.normalisation),
+                    phase_named(options.phase), options.reference_radius, options.lmax};
+  request.format = format;
+  return request;
+}
+
 void run(const Options& options, const Common& common) {
   const CoefficientFormat format = coefficient_format(options.output);
   refuse_same_file(options.input, options.output);
-  std::optional<EulerAngles> angles;
-  if (!options.rotation.empty()) angles = angles_of(options);
+  const ConvertRequest request = request_of(options, format);
   AtomicFile file(options.output); // before long work: a result that cannot be written should fail now
-  CoefficientSet set = read_in_unit(options.input, options.of, stated_metres(options.length_unit));
-  state_convention(options, set);
-  const std::string before = described(set);
-  if (options.si) state_si(set);
-  if (options.brillouin_radius) state_radius(*options.brillouin_radius, options.input, set);
-  if (!options.field.empty()) set = single_field(set, options.field);
-  if (options.lmax && *options.lmax > set.lmax)
-    throw Error(Fault::bad_argument, fmt::format("--lmax {}: {} goes to degree {}, and convert only leaves degrees out",
-                                                 *options.lmax, options.input, set.lmax));
-  ConversionTarget shorter;
-  shorter.lmax = options.lmax;
-  if (options.lmax) set = converted(set, shorter);
-  if (angles) {
-    ConsoleMonitor monitor(common.style());
-    set = rotated(set, *angles, monitor, common.threads);
-    monitor.clear();
-    set.remarks.emplace_back(
-        fmt::format("rotation_{}", set.remarks.size() + 1),
-        fmt::format("R_z(A) R_y(B) R_z(C) about the origin, A,B,C = {} {}", options.rotation, options.angle_unit));
-  }
-  CoefficientSet result = converted(set, target_of(options, set));
-  std::string& history = result.provenance.history;
+  ConsoleMonitor monitor(common.style());
+  ConvertResult result = convert(request, monitor, common.threads);
+  monitor.clear();
+  std::string& history = result.output.provenance.history;
   history += fmt::format("{}{}", history.empty() ? "" : "; ", fmt::join(common.command, " "));
-  write_coefficient_set(result, format, file);
+  write_coefficient_set(result.output, format, file);
   check_stop(ConsoleMonitor(ProgressStyle::none));
   file.commit();
   if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
-  for (const std::string& note : set.notes) write_stdout("note: " + note + "\n");
-  write_stdout(fmt::format("from: {}\nto:   {}\n", before, described(result)));
+  for (const std::string& note : result.notes) write_stdout("note: " + note + "\n");
+  write_stdout(fmt::format("from: {}\nto:   {}\n", described(result.input), described(result.output)));
 }
 
 } // namespace

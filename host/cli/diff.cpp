@@ -2,12 +2,8 @@
 
 #include "host/cli/quantities.hpp"
 #include "host/error.hpp"
-#include "host/io/coefficient_content.hpp"
-#include "host/io/coefficient_file.hpp"
-#include "host/io/length_unit.hpp"
 #include "host/report/json_parts.hpp"
-#include "host/spectrum/convert.hpp"
-#include "host/spectrum/difference.hpp"
+#include "host/requests/diff.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,16 +21,6 @@ struct Options {
   std::string length_unit;
   bool json = false;
 };
-
-// --of and --length-unit are for the one of both files, or for both, that they are about.
-CoefficientSet read(const Options& options, const std::string& path, bool& unit_used) {
-  const auto metres = stated_metres(options.length_unit);
-  CoefficientSet set = read_coefficient_set(path, can_hold_expansions(path) ? options.of : "", metres);
-  const bool metric = set.units_stated && set.length_unit == "m";
-  if (metres && set.units_stated && !metric && !set.length_unit.empty()) state_length_unit(set, *metres, path);
-  unit_used = unit_used || !metric;
-  return options.field.empty() || set.fields == 1 ? set : single_field(set, options.field);
-}
 
 // Infinity has no place in JSON.
 nlohmann::ordered_json number_or_null(double value) {
@@ -110,15 +96,14 @@ void write_screen(const Options& options, const CoefficientDifference& result, c
 }
 
 void run(const Options& options, const Common& common) {
-  bool unit_used = false;
-  const CoefficientSet a = read(options, options.first, unit_used), b = read(options, options.second, unit_used);
-  if (!options.length_unit.empty() && !unit_used)
-    throw Error(Fault::bad_argument, "--length-unit: both files are in metres already");
-  std::vector<std::string> notes;
-  for (const std::string& note : a.notes) notes.push_back("A: " + note);
-  for (const std::string& note : b.notes) notes.push_back("B: " + note);
-  const CoefficientDifference result =
-      difference(a, b, {*normalisation_named(options.normalisation), *phase_named(options.phase)});
+  DiffRequest request;
+  request.first = options.first;
+  request.second = options.second;
+  request.of = options.of;
+  request.field = options.field;
+  request.convention = {*normalisation_named(options.normalisation), *phase_named(options.phase)};
+  request.metres = stated_metres(options.length_unit);
+  const auto [result, notes] = diff(request);
   if (options.json)
     write_json(options, common, result, notes);
   else

@@ -1,17 +1,12 @@
 #include "host/cli/body_options.hpp"
-#include "host/cli/coefficient_outputs.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/expansion_words.hpp"
-#include "host/requests/expand_flow.hpp"
-#include "host/requests/expand_surfaces.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/plan/moments.hpp"
-#include "host/report/json_parts.hpp"
-#include "host/report/result.hpp"
-#include "host/spectrum/translate.hpp"
+#include "host/report/expansion_file.hpp"
+#include "host/requests/expand.hpp"
 
 #include <fmt/format.h>
 
@@ -40,21 +35,8 @@ struct Options {
 
 constexpr std::uint64_t large_json = std::uint64_t(50) << 20;
 
-class Stopwatch {
-public:
-  double lap() {
-    const double seconds = seconds_since(last_);
-    last_ = Clock::now();
-    return seconds;
-  }
-  double total() const { return seconds_since(start_); }
-
-private:
-  Clock::time_point start_ = Clock::now(), last_ = start_;
-};
-
 FlowChoice flow_choice(const Options& options, const ExpansionChoice& choice) {
-  if (options.flow_options && (choice.maps.empty() || choice.maps.back() != "flow"))
+  if (options.flow_options && (choice.maps.empty() || choice.maps.back() != MapMethod::flow))
     throw Error(
         Fault::bad_argument,
         fmt::format(
@@ -86,144 +68,64 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-std::uint64_t all_json_bytes(const ExpansionChoice& choice) {
-  return (choice.mass ? json_bytes(choice.lmax) : 0) + choice.maps.size() * surface_json_bytes(choice.lmax);
+ExpandRequest request_of(const Options& options) {
+  ExpandRequest request;
+  request.expansions = parse_expansions(options.of, options.recipe, options.map_file, options.lmax);
+  request.expansions.flow = flow_choice(options, request.expansions);
+  request.estimate_aliasing = options.aliasing;
+  request.cut_off = options.cut_off;
+  request.verify = parse_verify(options.verify);
+  request.seed = options.seed;
+  return request;
 }
 
-// What the run needs at most: the result, and either the computation or its check.
-MemoryNeed memory_need(const Options& options, const ExpansionChoice& choice, std::span<const MomentProblem> problems,
-                       const Backend& backend) {
-  MemoryNeed need = surfaces_memory(choice, problems.front().faces.size(), backend);
-  if (!choice.mass) return need;
-  const std::uint64_t result = 16 * Coefficients::count(options.lmax);
-  if (need.host) need.host += result;
-  for (const MomentProblem& problem : problems) { // one after the other, beside the sum of those before
-    const MemoryNeed one = backend.moments_memory(problem);
-    const std::uint64_t before = &problem == problems.data() ? 0 : result;
-    const std::uint64_t check = result + one.host + verify_bytes(problem, parse_verify(options.verify));
-    need.host = std::max({need.host, one.host + before, check});
-    need.device = std::max(need.device, one.device);
-  }
-  return need;
-}
-
-void write_mass_plan(const Options& options, const Body& body, std::span<const MomentProblem> problems,
-                     const Backend& backend) {
-  std::uint64_t pairs = 0;
-  double elements = 0, full = 0;
-  for (const MomentProblem& problem : problems) {
-    const plan::Moments plan = plan::moments(problem, int(backend.facts().subgroup));
-    pairs += plan.pair_count;
-    elements += plan.elements;
-    full += plan.full_elements;
-  }
-  write_stdout(
-      fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, {:.9g}) "
-                  "({}), R = {:.9g}\n",
-                  options.lmax, Coefficients::count(options.lmax), body.origin.x(), body.origin.y(), body.origin.z(),
-                  body.origin_kind, body.brillouin_radius));
-  write_stdout(fmt::format("work: {} pairs of triangles, {:.3g} of {:.3g} recursion entries after the cut-off {:.0e}\n",
-                           pairs, elements, full, options.cut_off));
-}
-
-void write_plan(const Options& options, const ExpansionChoice& choice, const Body& body,
-                std::span<const MomentProblem> problems, const Backend& backend) {
-  const MemoryNeed need = memory_need(options, choice, problems, backend);
+void write_plan(const ExpandRequest& request, const Body& body, const Backend& backend) {
+  const ExpandPlan plan = plan_expand(request, body, backend);
+  const ExpansionChoice& choice = request.expansions;
   write_stdout(mesh_line(body.surface.mesh()) + "\n");
-  for (const std::string& map : choice.maps)
-    write_stdout(fmt::format("plan: surface over the {} map to degree {}, {} coefficients of each of six fields\n", map,
-                             options.lmax, SphereCoefficients::count(options.lmax)));
-  if (choice.mass) write_mass_plan(options, body, problems, backend);
-  write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
-  write_stdout(
-      fmt::format("memory: at most {} MiB on the host and {} MiB on the device, beside the mesh and the program; "
-                  "JSON of about {} MiB\n",
-                  (need.host >> 20) + 1, (need.device + (1 << 20) - 1) >> 20, (all_json_bytes(choice) >> 20) + 1));
-}
-
-ExpandResult compute(const Options& options, const ExpansionChoice& choice, const Common& common, Body body,
-                     std::unique_ptr<Backend> backend, std::vector<std::string> notes, Timings timings,
-                     Stopwatch& watch) {
-  ConsoleMonitor monitor(common.style());
-  const std::vector<MomentProblem> problems = mass_problems(body, options.lmax, options.cut_off);
-  RunReport run;
-  Coefficients mass;
-  Accuracy accuracy;
-  accuracy.how = Verify::none;
-  // First, because maps are what may not be possible.
-  std::vector<SurfaceResult> surfaces = expand_surfaces(choice, options.aliasing, body, *backend, monitor);
-  timings.surfaces = watch.lap();
+  for (const MapMethod map : choice.maps)
+    write_stdout(fmt::format("plan: surface over the {} map to degree {}, {} coefficients of each of six fields\n",
+                             name(map), choice.lmax, SphereCoefficients::count(choice.lmax)));
   if (choice.mass) {
-    std::vector<std::vector<double>> norms;
-    mass = mass_moments(problems, *backend, monitor, &run, &norms);
-    for (const MomentProblem& problem : problems)
-      if (near_problem(problem)) {
-        notes.push_back(
-            "the origin is more than 16 radii away from the body or a part of it, whose moments are computed "
-            "about the middle of its box and moved to the origin");
-        break;
-      }
-    timings.moments = watch.lap();
-    accuracy = verify_all(problems, mass, norms, *backend, parse_verify(options.verify), options.seed, monitor);
-    if (accuracy.how != Verify::none)
-      accuracy.agreements.push_back(compare_with_tensors(body, mass, accuracy.estimate.error));
-    timings.verify = watch.lap();
+    write_stdout(fmt::format("plan: mass multipoles to degree {}, {} coefficients, about the point ({:.9g}, {:.9g}, "
+                             "{:.9g}) ({}), R = {:.9g}\n",
+                             choice.lmax, Multipoles::count(choice.lmax), body.origin.x(), body.origin.y(),
+                             body.origin.z(), body.origin_kind, body.brillouin_radius));
+    write_stdout(
+        fmt::format("work: {} pairs of triangles, {:.3g} of {:.3g} recursion entries after the cut-off {:.0e}\n",
+                    plan.pairs, plan.elements, plan.full_elements, request.cut_off));
   }
-  const Tensors second = tensors(body);
-  timings.total = watch.total();
-  ExpandResult result{common.command,   utc_now(),   std::move(body),    backend->facts(), options.cut_off,
-                      std::move(mass),  second,      std::move(run),     timings,          std::move(accuracy),
-                      std::move(notes), choice.mass, std::move(surfaces)};
-  return result;
+  write_stdout(fmt::format("device: {}\n", device_line(backend.facts())));
+  write_stdout(fmt::format(
+      "memory: at most {} MiB on the host and {} MiB on the device, beside the mesh and the program; "
+      "JSON of about {} MiB\n",
+      (plan.memory.host >> 20) + 1, (plan.memory.device + (1 << 20) - 1) >> 20, (json_bytes(choice) >> 20) + 1));
 }
 
-void run(const Options& options, Common& common) {
-  Stopwatch watch;
-  ExpansionChoice choice = parse_expansions(options.of, options.recipe, options.map_file, options.lmax);
-  for (const std::string& path : options.outputs) check_expansion_output(path, choice.mass, choice.maps.size());
-  choice.flow = flow_choice(options, choice);
-  // Before long work: a result that cannot be written should fail now.
-  std::vector<std::unique_ptr<AtomicFile>> files;
+// Opens the files before long work: a result that cannot be written should fail early.
+std::vector<std::unique_ptr<AtomicFile>> open_outputs(const Options& options, const ExpansionChoice& choice) {
+  for (const std::string& path : options.outputs) check_expansion_file(path, choice.mass, choice.maps.size());
   for (const std::string& path : options.outputs) {
     for (const std::string& input : input_files(options.body)) refuse_mesh_as_output(input, path);
     if (!options.map_file.empty()) refuse_same_file(options.map_file, path);
   }
+  std::vector<std::unique_ptr<AtomicFile>> files;
   if (!options.dry_run)
     for (const std::string& path : options.outputs) files.push_back(std::make_unique<AtomicFile>(path));
+  return files;
+}
 
-  std::vector<std::string> notes;
-  std::string note;
-  // While the device opens, which mostly waits for its driver.
-  auto opening = std::async(std::launch::async, [&] { return open_backend(common, &note); });
-  Body body = load_body(options.body, notes);
-  if (!body.parts.empty() && !choice.maps.empty())
-    notes.push_back("the surface that is mapped and expanded is MESH's alone: parts have mass only");
-  Timings timings;
-  timings.load = watch.lap();
-  auto backend = opening.get();
-  timings.device = watch.lap();
-  if (!note.empty()) {
-    if (!common.quiet) say(fmt::format("cowgpu: {}\n", note));
-    notes.push_back(note);
-  }
-  const std::vector<MomentProblem> problems = mass_problems(body, options.lmax, options.cut_off);
-  check_memory(memory_need(options, choice, problems, *backend), *backend,
-               "lower --lmax or take a mesh with fewer triangles");
-  if (options.dry_run) {
-    write_plan(options, choice, body, problems, *backend);
-    return;
-  }
-  const ExpandResult result =
-      compute(options, choice, common, std::move(body), std::move(backend), std::move(notes), timings, watch);
-
+void write_result(const Options& options, const Common& common, const ExpandRequest& request,
+                  const ExpandResult& result, std::span<const std::unique_ptr<AtomicFile>> files) {
+  const std::uint64_t bytes = json_bytes(request.expansions);
   const bool writes_json = options.json || std::any_of(options.outputs.begin(), options.outputs.end(),
                                                        [](const std::string& o) { return ends_with(o, ".json"); });
-  if (writes_json && all_json_bytes(choice) > large_json && !common.quiet)
-    say(fmt::format("cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n",
-                    all_json_bytes(choice) / 1000000));
+  if (writes_json && bytes > large_json && !common.quiet)
+    say(fmt::format("cowgpu: the JSON will have about {} MB; -o FILE.csv is smaller\n", bytes / 1000000));
+  const ConsoleMonitor monitor(ProgressStyle::none);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    check_stop(ConsoleMonitor(ProgressStyle::none));
-    write_expansion(result, coefficient_format(options.outputs[i]), *files[i]);
+    check_stop(monitor);
+    write_expansion(result, coefficient_format(options.outputs[i]), *files[i], monitor);
     files[i]->commit();
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.outputs[i]));
   }
@@ -232,17 +134,36 @@ void run(const Options& options, Common& common) {
   else
     write_screen(result, write_stdout);
   flush_stdout();
-  check_surfaces(result.surfaces);
-  if (result.accuracy.how != Verify::none && !result.accuracy.passed()) {
-    flush_stdout();
-    const Agreement& worst = *result.accuracy.worst();
-    throw Error(
-        Fault::check_failed,
-        fmt::format(
-            "{} against {} is off by {:.1e} times what rounding explains (degree {}; {:.0f} are allowed): do not "
-            "trust these numbers; try --device cpu and `cowgpu validate`",
-            worst.path, worst.against, worst.errors.ratio, worst.errors.degree, Accuracy::bound));
+}
+
+void run(const Options& options, Common& common) {
+  const auto start = Clock::now();
+  const ExpandRequest request = request_of(options);
+  const auto files = open_outputs(options, request.expansions);
+  std::vector<std::string> notes;
+  std::string note;
+  // While the device opens, which mostly waits for its driver.
+  auto opening = std::async(std::launch::async, [&] { return open_backend(common, &note); });
+  Body body = load_body(options.body, notes);
+  if (!body.parts.empty() && !request.expansions.maps.empty())
+    notes.push_back("the surface that is mapped and expanded is MESH's alone: parts have mass only");
+  const double load_seconds = seconds_since(start);
+  const auto backend = opening.get();
+  const double device_seconds = seconds_since(start) - load_seconds;
+  if (!note.empty()) {
+    if (!common.quiet) say(fmt::format("cowgpu: {}\n", note));
+    notes.push_back(note);
   }
+  if (options.dry_run) return write_plan(request, body, *backend);
+  ConsoleMonitor monitor(common.style());
+  ExpandResult result = expand(request, std::move(body), *backend, monitor, std::move(notes));
+  monitor.clear();
+  result.command = common.command;
+  result.timings.load = load_seconds;
+  result.timings.device = device_seconds;
+  result.timings.total = seconds_since(start);
+  write_result(options, common, request, result, files);
+  require_sound(result);
 }
 
 } // namespace

@@ -1,20 +1,15 @@
 #include "host/cli/expansion_words.hpp"
 
+#include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 #include "host/number.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
+#include <set>
 #include <sstream>
 
 namespace cowgpu::cli {
-namespace {
-
-constexpr std::array map_names = {"harmonic", "stretch", "smooth", "flow"};
-
-} // namespace
 
 ExpansionChoice parse_expansions(const std::string& of, const std::string& recipe, const std::string& map_file,
                                  int lmax) {
@@ -22,17 +17,16 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
   choice.map_file = map_file;
   choice.lmax = lmax;
   choice.paper = recipe == "paper";
-  std::array<bool, map_names.size()> wanted{};
+  std::set<MapMethod> wanted; // in the order of made_maps
   std::istringstream list(of + ",");
   for (std::string word; std::getline(list, word, ',');) {
-    const auto map = std::find(map_names.begin(), map_names.end(), word);
     if (word == "all") {
       choice.mass = true;
-      wanted.fill(true);
-    } else if (word == "mass")
+      wanted.insert(made_maps.begin(), made_maps.end());
+    } else if (word == mass_expansion)
       choice.mass = true;
-    else if (map != map_names.end())
-      wanted[std::size_t(map - map_names.begin())] = true;
+    else if (const auto map = map_method_named(word))
+      wanted.insert(*map);
     else
       throw Error(
           Fault::bad_argument,
@@ -40,22 +34,8 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
                       "all, separated by commas",
                       of, word));
   }
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i]) choice.maps.emplace_back(map_names[i]);
-  if (choice.paper && !wanted[0] && !wanted[3])
-    throw Error(
-        Fault::bad_argument,
-        fmt::format("--recipe paper is about the harmonic map and the flow, and --of {} asks for neither; add --of "
-                    "harmonic or --of flow",
-                    of));
-  if (!map_file.empty() && (choice.maps.size() != 1 || wanted[3]))
-    throw Error(Fault::bad_argument,
-                fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
-                            "with --of harmonic, stretch or smooth",
-                            map_file, of,
-                            choice.maps.empty()      ? "none"
-                            : choice.maps.size() > 1 ? "several"
-                                                     : "the flow, whose map is not kept in a file"));
+  choice.maps.assign(wanted.begin(), wanted.end());
+  check_expansions(choice);
   return choice;
 }
 
@@ -66,6 +46,12 @@ double parse_flow_time(const std::string& text) {
     throw Error(Fault::bad_argument,
                 fmt::format("--time {}: it must be auto or a number above 0, in the mesh's length unit", text));
   return *time;
+}
+
+SurfaceFields parse_fields(const std::string& text) {
+  if (text == "xyz") return SurfaceFields::xyz;
+  if (text == "f") return SurfaceFields::f;
+  throw Error(Fault::bad_argument, fmt::format("--fields {}: it must be xyz or f", text));
 }
 
 } // namespace cowgpu::cli

@@ -1,7 +1,6 @@
-// The words of --of, --recipe and --time, for every command that has them.
+// The words of --of, --recipe, --time and --fields, for every command that has them.
 #pragma once
 
-#include "host/cli/expansion_words.hpp"
 #include "host/requests/expand_surfaces.hpp"
 
 #include <string>
@@ -15,5 +14,8 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
 
 /// Reads --time: "auto" (0), or a finite number above 0. Throws Error(bad_argument).
 double parse_flow_time(const std::string& text);
+
+/// Reads --fields: "xyz" or "f". Throws Error(bad_argument).
+SurfaceFields parse_fields(const std::string& text);
 
 } // namespace cowgpu::cli

@@ -1,13 +1,13 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/drawing.hpp"
 #include "host/cli/expansion_words.hpp"
-#include "host/cli/surface_source.hpp"
-#include "host/cli/tip_input.hpp"
 #include "host/requests/expand_surfaces.hpp"
 
 #include "host/error.hpp"
 #include "host/figures/figures.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/physics/tip.hpp"
+#include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
 
@@ -41,9 +41,8 @@ std::string short_name(const RawMesh& mesh) {
   return std::filesystem::path(mesh.name).filename();
 }
 
-std::string map_title(const std::string& name) {
-  if (name == "flow") return "gradient flow";
-  return name + " map";
+std::string map_title(std::string_view map) {
+  return map == name(MapMethod::flow) ? "gradient flow" : fmt::format("{} map", map);
 }
 
 /// What a figure is made from.
@@ -74,7 +73,7 @@ public:
           Fault::bad_argument,
           fmt::format("--of {}: the figure '{}' is of one map: harmonic, stretch, smooth or flow", options_.of, name));
     const SurfaceResult& result = results[0];
-    const std::string title = fmt::format("{}, {}", short_name(mesh), map_title(result.name));
+    const std::string title = fmt::format("{}, {}", short_name(mesh), map_title(cowgpu::name(result.of)));
     if (name == "orders")
       return figures::orders_figure(result.expansion, SurfaceFields::xyz, mesh, view, title, *backend_, monitor_);
     if (name == "components")
@@ -93,7 +92,7 @@ private:
       check_surfaces(results);
       return results;
     }
-    for (const std::string& map : choice.maps) {
+    for (const MapMethod map : choice.maps) {
       ExpansionChoice one = choice;
       one.maps = {map};
       try {
@@ -102,7 +101,7 @@ private:
         results.push_back(std::move(of_map.front()));
       } catch (const Error& error) {
         if (error.fault() != Fault::map_failed && error.fault() != Fault::check_failed) throw;
-        say(fmt::format("cowgpu: the {} is left out: {}\n", map_title(map), error.what()));
+        say(fmt::format("cowgpu: the {} is left out: {}\n", map_title(name(map)), error.what()));
       }
     }
     return results;
@@ -128,14 +127,14 @@ private:
           fmt::format("{}, {}", short_name(body_.surface.mesh()), map_title(sources[0].name)), *backend_, monitor_);
     std::vector<figures::NamedExpansion> named;
     for (const SurfaceSource& source : sources) named.push_back({map_title(source.name), &source.expansion});
-    const Coefficients mass = mass_moments();
+    const Multipoles mass = mass_moments();
     return figures::spectra_figure(format, named, &mass);
   }
 
   // A ball of the body's volume on the left, the body on the right.
   plot::Canvas tipping() {
     using namespace physics;
-    const TipBody cow = tip_body(body_);
+    const RigidBody cow = solid_body(body_);
     const Stance stance = stand(cow, {}), ball = stand(ball_like(cow, body_.mass()), {.as_modelled = true});
     const Tipping of_cow = physics::tipping(stance, Side::right), of_ball = physics::tipping(ball, Side::right);
     const std::array shown = {figures::TippedBody{&ball, &of_ball, "spherical body"},
@@ -143,7 +142,7 @@ private:
     return figures::tipping_figure(shown, *backend_, monitor_);
   }
 
-  Coefficients mass_moments() {
+  Multipoles mass_moments() {
     MomentProblem problem;
     problem.vertices = body_.surface.vertices();
     problem.faces = body_.surface.faces();
@@ -156,8 +155,8 @@ private:
   plot::Canvas spectra(plot::PictureFormat format, const ExpansionChoice& choice,
                        const std::vector<SurfaceResult>& results) {
     std::vector<figures::NamedExpansion> named;
-    for (const SurfaceResult& result : results) named.push_back({map_title(result.name), &result.expansion});
-    Coefficients mass;
+    for (const SurfaceResult& result : results) named.push_back({map_title(name(result.of)), &result.expansion});
+    Multipoles mass;
     if (choice.mass) mass = mass_moments();
     return figures::spectra_figure(format, named, choice.mass ? &mass : nullptr);
   }

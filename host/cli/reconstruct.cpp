@@ -1,20 +1,16 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/expansion_words.hpp"
 #include "host/cli/order_list.hpp"
 #include "host/cli/surface_outputs.hpp"
-#include "host/cli/surface_source.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
-#include "host/io/surface_file.hpp"
-#include "host/report/json_parts.hpp"
-#include "host/report/order_names.hpp"
-#include "host/report/reconstruct_report.hpp"
+#include "host/requests/reconstruct.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace cowgpu::cli {
 namespace {
@@ -29,123 +25,60 @@ struct Options {
   bool json = false;
 };
 
-// Passes on the wish to stop, and keeps quiet about the parts of an order, which are short.
-class QuietMonitor final : public Monitor {
-public:
-  explicit QuietMonitor(const Monitor& outer) : outer_(outer) {}
-  bool stopped() const override { return outer_.stopped(); }
-
-private:
-  const Monitor& outer_;
-};
-
-std::vector<int> chosen_orders(const Options& options) {
-  std::vector<int> orders = parse_orders(options.orders);
-  std::sort(orders.begin(), orders.end());
-  return orders;
-}
-
-int resolution_of(const Options& options, int order) {
-  return options.resolution > 0 ? options.resolution : default_resolution(order);
+ReconstructRequest request_of(const Options& options, const Common& common) {
+  ReconstructRequest request;
+  request.source = options.source;
+  request.orders = parse_orders(options.orders);
+  std::sort(request.orders.begin(), request.orders.end());
+  request.fields = parse_fields(options.fields);
+  request.resolution = options.resolution;
+  request.samples = options.samples;
+  request.threads = common.threads;
+  return request;
 }
 
 OutputKey order_key(int order) {
   return {std::to_string(order), fmt::format("order-{:04}", order)};
 }
 
-RebuiltOrder rebuild(const Options& options, const ReconstructReport& report, int order, SurfaceOutputs& outputs,
-                     unsigned threads, Backend& backend, Monitor& monitor) {
-  const auto start = Clock::now();
-  RebuiltOrder result;
-  result.order = order;
-  result.resolution = resolution_of(options, order);
-  const SphereGrid grid = make_grid(GridKind::clenshaw_curtis, result.resolution);
-  const TriangleSurface surface = reconstruct(*report.expansion, report.fields, order, grid, backend, monitor);
-  result.vertices = surface.vertices.size();
-  result.faces = surface.faces.size();
-  result.measures = measure(*report.expansion, report.fields, order, backend, monitor);
-  check_stop(monitor);
-  if (report.body)
-    result.distance = surface_distance(surface.vertices, surface.faces, report.body->surface.vertices(),
-                                       report.body->surface.faces(), report.samples, threads, monitor);
-  if (outputs.any()) {
-    check_stop(monitor);
-    result.output =
-        outputs.write(order_key(order), surface,
-                      {fmt::format("order {}, {}", order, order_name(order)),
-                       "shape " + describe_order(*report.expansion, report.fields, order),
-                       fmt::format("expansion {}, lmax {}", report.name, report.expansion->coefficients.lmax),
-                       "mesh " + report.mesh, "mesh_sha256 " + report.mesh_hash},
-                      {"order", double(order)});
-  }
-  result.seconds = seconds_since(start);
-  return result;
-}
-
 void run(const Options& options, const Common& common) {
   const auto start = Clock::now();
-  std::vector<int> orders = chosen_orders(options);
-  const SurfaceFields fields = parse_fields(options.fields);
-  const int largest = orders.empty() ? 8 : orders.back();
-  check_surface_choice(options.source, orders.empty() ? 0 : largest);
-  if (options.resolution > 0 && options.resolution < largest)
-    throw Error(Fault::bad_argument, fmt::format("--resolution {} cannot show order {}; it must be at least the order",
-                                                 options.resolution, largest));
-  SurfaceOutputs outputs(options.output, options.format, orders.empty() ? 9 : orders.size(), "order");
-  for (std::size_t i = 0; outputs.any() && i < (orders.empty() ? 9 : orders.size()); ++i)
+  const ReconstructRequest request = request_of(options, common);
+  check_reconstruct(request);
+  std::vector<int> orders = request.orders; // or as many as there may be
+  for (int order = 0; request.orders.empty() && order <= 8; ++order) orders.push_back(order);
+  SurfaceOutputs outputs(options.output, options.format, orders.size(), "order");
+  for (const int order : orders)
     for (const std::string& input : {options.source.input, options.source.mesh})
-      refuse_mesh_as_output(input, outputs.path(order_key(orders.empty() ? int(i) : orders[i])));
-  outputs.open(order_key(orders.empty() ? 0 : orders.front()));
+      if (outputs.any()) refuse_mesh_as_output(input, outputs.path(order_key(order)));
+  outputs.open(order_key(orders.front()));
 
   std::string note;
   const auto backend = open_backend(common, &note);
   if (!note.empty() && !common.quiet) say(fmt::format("cowgpu: {}\n", note));
   ConsoleMonitor monitor(common.style());
-  SurfaceSource source = load_surface(options.source, orders.empty() ? 0 : largest, *backend, monitor);
-  if (orders.empty())
-    for (int order = 0; order <= std::min(8, source.expansion.coefficients.lmax); ++order) orders.push_back(order);
-  check_memory(rebuild_memory(orders.back(), resolution_of(options, orders.back()), *backend), *backend,
-               "lower --order or --resolution");
-
+  std::size_t written = 0;
+  const auto write = [&](const ReconstructReport& report, int order, const TriangleSurface& body) -> std::string {
+    if (!outputs.any()) return "";
+    check_stop(monitor);
+    const std::string path =
+        outputs.write(order_key(order), body, order_facts(report, order), {"order", double(order)});
+    ++written;
+    monitor.clear();
+    if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", path));
+    return path;
+  };
   ReconstructReport report;
-  report.command = common.command;
-  report.created = utc_now();
-  report.input = options.source.input;
-  report.from_file = is_result_file(options.source.input);
-  report.device = backend->facts();
-  report.name = source.name;
-  report.recipe = source.recipe;
-  report.map_method = source.map_method;
-  report.mesh = source.mesh;
-  report.mesh_hash = source.mesh_hash;
-  report.expansion = &source.expansion;
-  report.fields = fields;
-  report.body = std::move(source.body);
-  report.samples = options.samples;
-  report.notes = std::move(source.notes);
-  if (!note.empty()) report.notes.push_back(note);
-  report.source_seconds = seconds_since(start);
-  QuietMonitor quiet(monitor);
-  double done = 0, all = 0; // an order costs about its square, and 64 at least
-  const auto cost = [](int order) { return std::pow(std::max(order, 64), 2); };
-  for (const int order : orders) all += cost(order);
   try {
-    for (std::size_t i = 0; i < orders.size(); ++i) {
-      check_stop(monitor);
-      monitor.progress("orders rebuilt", done / all);
-      done += cost(orders[i]);
-      report.orders.push_back(rebuild(options, report, orders[i], outputs, common.threads, *backend, quiet));
-      if (!report.orders.back().output.empty() && !common.quiet) {
-        monitor.clear();
-        say(fmt::format("cowgpu: wrote {}\n", report.orders.back().output));
-      }
-    }
+    report = reconstruct(request, *backend, monitor, write);
   } catch (const Error& error) {
-    if (error.fault() != Fault::interrupted || !outputs.any() || report.orders.empty()) throw;
+    if (error.fault() != Fault::interrupted || written == 0) throw;
     throw Error(Fault::interrupted, fmt::format("interrupted: {} of {} files were written, and no part of another",
-                                                report.orders.size(), orders.size()));
+                                                written, orders.size()));
   }
   monitor.clear();
+  report.command = common.command;
+  if (!note.empty()) report.notes.push_back(note);
   report.total_seconds = seconds_since(start);
   if (options.json)
     write_json(report, write_stdout);

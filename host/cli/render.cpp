@@ -1,7 +1,7 @@
 #include "host/cli/commands.hpp"
+#include "host/cli/expansion_words.hpp"
 #include "host/cli/drawing.hpp"
 #include "host/cli/order_list.hpp"
-#include "host/cli/surface_source.hpp"
 #include "host/figures/scene.hpp"
 
 #include "host/clock.hpp"
@@ -13,6 +13,7 @@
 #include "host/mesh/triangle_surface.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/spectrum/expand_surface.hpp"
+#include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
 

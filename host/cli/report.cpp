@@ -7,6 +7,7 @@
 #include "host/io/result_json.hpp"
 #include "host/io/shown.hpp"
 #include "host/io/surface_file.hpp"
+#include "host/map/map_method.hpp"
 #include "host/report/page.hpp"
 
 #include <fmt/format.h>
@@ -41,8 +42,8 @@ std::vector<SurfaceFile> read_surfaces(const std::string& path, const json& docu
   const json& expansions = result_json::member(path, document, "expansions");
   if (!expansions.is_object())
     throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' must be an object", path));
-  for (const char* first : {"stretch", "harmonic", "smooth", "flow"})
-    if (expansions.contains(first)) files.push_back(read_surface(path, first));
+  for (const MapMethod first : {MapMethod::stretch, MapMethod::harmonic, MapMethod::smooth, MapMethod::flow})
+    if (expansions.contains(name(first))) files.push_back(read_surface(path, std::string(name(first))));
   for (const auto& [key, value] : expansions.items()) {
     const auto known = [&key = key](const SurfaceFile& file) { return file.name == key; };
     if (key != "mass" && std::none_of(files.begin(), files.end(), known)) files.push_back(read_surface(path, key));

@@ -1,17 +1,14 @@
 #include "host/cli/commands.hpp"
 
-#include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/grid_file.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
-#include "host/spectrum/roundtrip.hpp"
+#include "host/requests/roundtrip.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
-
-#include <algorithm>
 
 namespace cowgpu::cli {
 namespace {
@@ -26,54 +23,10 @@ struct Options {
   bool dry_run = false;
 };
 
-struct Outcome {
-  SphereGrid grid;
-  DeviceFacts device;
-  MemoryNeed memory;
-  std::string note;
-  double setup_seconds = 0;
-  TransformReport synthesis, analysis; // reports of the run with the median time
-  CoefficientError error;
-  double bound = 0;
-
-  bool passed() const { return error.max <= bound; } // NaN fails
-};
-
-TransformReport median(std::vector<TransformReport> reports) {
-  const auto middle = reports.begin() + std::ptrdiff_t(reports.size() / 2);
-  std::nth_element(reports.begin(), middle, reports.end(),
-                   [](const TransformReport& a, const TransformReport& b) { return a.seconds < b.seconds; });
-  return *middle;
-}
-
 std::uint64_t peak_resident() {
   struct rusage usage {};
   getrusage(RUSAGE_SELF, &usage);
   return std::uint64_t(usage.ru_maxrss) * 1024;
-}
-
-void compute(const Options& options, const Common& common, Backend& backend, Outcome& outcome) {
-  const auto start = Clock::now();
-  const auto transform = backend.sphere_transform(outcome.grid, options.lmax);
-  outcome.setup_seconds += seconds_since(start);
-  const SphereCoefficients before = random_coefficients(options.lmax, options.fields, options.seed);
-  SphereCoefficients after(options.lmax, options.fields);
-  std::vector<double> values(std::size_t(options.fields) * outcome.grid.points());
-  ConsoleMonitor monitor(common.style());
-  std::vector<TransformReport> syntheses, analyses;
-  for (int i = 0; i <= options.runs; ++i) { // the first one warms up
-    TransformReport synthesis, analysis;
-    transform->synthesise(options.fields, before.values, values, monitor, &synthesis);
-    transform->analyse(options.fields, values, after.values, monitor, &analysis);
-    if (i == 0) continue;
-    syntheses.push_back(std::move(synthesis));
-    analyses.push_back(std::move(analysis));
-  }
-  monitor.clear();
-  outcome.synthesis = median(std::move(syntheses));
-  outcome.analysis = median(std::move(analyses));
-  outcome.error = compare(before, after);
-  outcome.bound = round_trip_bound(options.lmax);
 }
 
 nlohmann::ordered_json stage_json(const TransformReport& report) {
@@ -87,9 +40,9 @@ nlohmann::ordered_json stage_json(const TransformReport& report) {
           {"kernels", kernels}};
 }
 
-void write_json(const Options& options, const Common& common, const Outcome& o) {
+void write_json(const Options& options, const Common& common, const RoundtripResult& o, const std::string& note) {
   nlohmann::ordered_json notes = nlohmann::ordered_json::array();
-  if (!o.note.empty()) notes.push_back(o.note);
+  if (!note.empty()) notes.push_back(note);
   const nlohmann::ordered_json all = {
       {"schema", "cowgpu.roundtrip.v1"},
       {"program", program_json()},
@@ -121,17 +74,17 @@ std::string memory_text(const MemoryNeed& need) {
                      (need.device + (1 << 20) - 1) >> 20);
 }
 
-void write_head(const Options& options, const Outcome& o) {
+void write_head(const Options& options, const RoundtripResult& o, const std::string& note) {
   write_stdout(fmt::format("round trip: {} of random coefficients to degree {} (uniform in [-0.5, 0.5], seed {})\n",
                            options.fields == 1 ? "1 field" : fmt::format("{} fields", options.fields), options.lmax,
                            options.seed));
   write_stdout(fmt::format("grid: {}, {} rings of {} points\n", name(o.grid.kind), o.grid.rings, o.grid.ring_length));
-  if (!o.note.empty()) write_stdout("note: " + o.note + "\n");
+  if (!note.empty()) write_stdout("note: " + note + "\n");
   write_stdout("device: " + device_line(o.device) + "\n");
 }
 
-void write_text(const Options& options, const Outcome& o) {
-  write_head(options, o);
+void write_text(const Options& options, const RoundtripResult& o, const std::string& note) {
+  write_head(options, o, note);
   write_stdout(fmt::format("  {:<18} {:.2e}  largest error over largest coefficient (bound {:.1e}: {})\n", "max_error",
                            o.error.max, o.bound, o.passed() ? "passed" : "FAILED"));
   write_stdout(fmt::format("  {:<18} {:.2e}  root mean square, relative\n", "rms_error", o.error.rms));
@@ -147,33 +100,30 @@ void write_text(const Options& options, const Outcome& o) {
 }
 
 void run(const Options& options, const Common& common) {
-  Outcome outcome;
-  const auto backend = open_backend(common, &outcome.note);
-  outcome.device = backend->facts();
-  if (!outcome.note.empty() && !common.quiet) say(fmt::format("cowgpu: {}\n", outcome.note));
-  const auto start = Clock::now();
-  outcome.grid = make_grid(*grid_kind_named(options.grid), options.lmax);
-  outcome.setup_seconds = seconds_since(start);
-  outcome.memory = backend->sphere_transform_memory(outcome.grid, options.lmax, options.fields);
-  outcome.memory.host +=
-      std::uint64_t(options.fields) * (8 * outcome.grid.points() + 32 * SphereCoefficients::count(options.lmax));
-  check_memory(outcome.memory, *backend, "lower --lmax or --fields");
+  std::string note;
+  const auto backend = open_backend(common, &note);
+  if (!note.empty() && !common.quiet) say(fmt::format("cowgpu: {}\n", note));
+  const RoundtripRequest request = {options.lmax, options.fields, *grid_kind_named(options.grid), options.seed,
+                                    options.runs};
   if (options.dry_run) {
-    write_head(options, outcome);
-    write_stdout("memory: " + memory_text(outcome.memory) + "\n");
+    const RoundtripResult plan = plan_roundtrip(request, *backend);
+    write_head(options, plan, note);
+    write_stdout("memory: " + memory_text(plan.memory) + "\n");
     return;
   }
-  compute(options, common, *backend, outcome);
+  ConsoleMonitor monitor(common.style());
+  const RoundtripResult result = roundtrip(request, *backend, monitor);
+  monitor.clear();
   if (options.json)
-    write_json(options, common, outcome);
+    write_json(options, common, result, note);
   else
-    write_text(options, outcome);
-  if (outcome.passed()) return;
+    write_text(options, result, note);
+  if (result.passed()) return;
   flush_stdout();
   throw Error(Fault::check_failed,
               fmt::format("the round trip changed coefficients by {:.1e} of the largest, more than "
                           "{:.1e}: do not trust this device; try --device cpu",
-                          outcome.error.max, outcome.bound));
+                          result.error.max, result.bound));
 }
 
 } // namespace

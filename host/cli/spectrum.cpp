@@ -1,11 +1,9 @@
 #include "host/cli/commands.hpp"
 
 #include "host/cli/quantities.hpp"
-#include "host/error.hpp"
-#include "host/io/coefficient_file.hpp"
 #include "host/io/shown.hpp"
 #include "host/report/json_parts.hpp"
-#include "host/spectrum/power.hpp"
+#include "host/requests/spectrum.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,19 +20,8 @@ struct Options {
   bool json = false;
 };
 
-struct Column {
-  std::string name;
-  std::vector<double> power;
-};
-
 constexpr int bar_width = 40;
 constexpr double bar_range = 20; // decades at most
-
-double total(const std::vector<double>& power) {
-  double sum = 0;
-  for (const double s : power) sum += s;
-  return sum;
-}
 
 // Ends of the logarithmic scale: the powers that are not 0, at most bar_range decades of them.
 struct Scale {
@@ -60,9 +47,9 @@ struct Scale {
   }
 };
 
-void write_column(const Column& column, const char* symbol, const char* sum) {
+void write_column(const PowerSpectrum& column, const char* symbol, const char* sum) {
   const Scale scale(column.power);
-  write_stdout(fmt::format("\n{}: {} {:.15g}\n", shown(column.name), sum, total(column.power)));
+  write_stdout(fmt::format("\n{}: {} {:.15g}\n", shown(column.name), sum, column.total()));
   write_stdout(fmt::format("  {:>4}  {:>22}  {:>12}  log10 from 1e{:+03d} to 1e{:+03d}\n", "l", symbol,
                            fmt::format("{}/(2l+1)", symbol), scale.low, scale.high));
   for (std::size_t l = 0; l < column.power.size(); ++l) {
@@ -73,50 +60,41 @@ void write_column(const Column& column, const char* symbol, const char* sum) {
   }
 }
 
-void run(const Options& options, const Common& common) {
-  const CoefficientFile file = read_coefficients(options.input, stated_metres(options.length_unit));
-  const SphereCoefficients& a = file.coefficients;
-  if (options.cross && a.fields != 2)
-    throw Error(Fault::bad_argument,
-                fmt::format("--cross takes a file of two fields; {} has {}", options.input, a.fields));
-  std::vector<Column> columns;
-  for (int f = 0; f < a.fields; ++f) {
-    const std::string& name = file.names[std::size_t(f)];
-    columns.push_back({!name.empty() ? name : a.fields == 1 ? "field" : fmt::format("field_{}", f + 1), power(a, f)});
-  }
-  for (const Column& column : columns)
-    if (!std::isfinite(total(column.power)))
-      throw Error(Fault::file_format,
-                  fmt::format("{}: the squares of the coefficients of {} overflow double precision; "
-                              "scale the field down",
-                              options.input, shown(column.name)));
-  const Column cross =
-      options.cross ? Column{columns[0].name + " and " + columns[1].name, cross_power(a, 0, a, 1)} : Column{};
-  if (options.json) {
-    nlohmann::ordered_json fields = nlohmann::ordered_json::array();
-    for (const Column& column : columns)
-      fields.push_back({{"name", column.name}, {"total", total(column.power)}, {"power", column.power}});
-    nlohmann::ordered_json all = {{"schema", "cowgpu.spectrum.v1"},
-                                  {"program", program_json()},
-                                  {"command", common.command},
-                                  {"created", utc_now()},
-                                  {"input", options.input},
-                                  {"notes", file.notes},
-                                  {"lmax", a.lmax},
-                                  {"harmonics", "orthonormal"},
-                                  {"fields", fields}};
-    if (options.cross) all["cross"] = {{"total", total(cross.power)}, {"power", cross.power}};
-    write_stdout(json_text(all) + "\n");
-    return;
-  }
-  write_stdout(fmt::format("{}: {} to degree {}\n", options.input,
-                           a.fields == 1 ? "1 field" : fmt::format("{} fields", a.fields), a.lmax));
-  for (const std::string& note : file.notes) write_stdout("note: " + note + "\n");
+void write_json(const Options& options, const Common& common, const SpectrumResult& result) {
+  nlohmann::ordered_json fields = nlohmann::ordered_json::array();
+  for (const PowerSpectrum& field : result.fields)
+    fields.push_back({{"name", field.name}, {"total", field.total()}, {"power", field.power}});
+  nlohmann::ordered_json all = {{"schema", "cowgpu.spectrum.v1"},
+                                {"program", program_json()},
+                                {"command", common.command},
+                                {"created", utc_now()},
+                                {"input", options.input},
+                                {"notes", result.notes},
+                                {"lmax", result.lmax},
+                                {"harmonics", "orthonormal"},
+                                {"fields", fields}};
+  if (result.cross) all["cross"] = {{"total", result.cross->total()}, {"power", result.cross->power}};
+  write_stdout(json_text(all) + "\n");
+}
+
+void write_screen(const Options& options, const SpectrumResult& result) {
+  const std::size_t n = result.fields.size();
+  write_stdout(fmt::format("{}: {} to degree {}\n", options.input, n == 1 ? "1 field" : fmt::format("{} fields", n),
+                           result.lmax));
+  for (const std::string& note : result.notes) write_stdout("note: " + note + "\n");
   write_stdout("S_l = sum over m = -l ... l of |a_lm|^2, orthonormal harmonics, in the square of the field's unit\n");
-  for (const Column& column : columns) write_column(column, "S_l", "integral of f^2 over the unit sphere");
-  if (!options.cross) return;
+  for (const PowerSpectrum& field : result.fields) write_column(field, "S_l", "integral of f^2 over the unit sphere");
+  if (!result.cross) return;
   write_stdout("\nX_l = sum over m of conj(a_lm) b_lm; bars of '-' are negative\n");
-  write_column(cross, "X_l", "integral of f g over the unit sphere");
+  write_column(*result.cross, "X_l", "integral of f g over the unit sphere");
+}
+
+void run(const Options& options, const Common& common) {
+  const SpectrumResult result = spectrum({options.input, stated_metres(options.length_unit), options.cross});
+  if (options.json)
+    write_json(options, common, result);
+  else
+    write_screen(options, result);
 }
 
 } // namespace

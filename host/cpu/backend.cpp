@@ -43,7 +43,7 @@ public:
   }
 
   const DeviceFacts& facts() const override { return facts_; }
-  Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
+  Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
     return cpu::moments(problem, threads_, monitor, report);
   }
   MemoryNeed moments_memory(const MomentProblem& problem) const override {

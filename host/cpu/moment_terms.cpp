@@ -187,11 +187,7 @@ private:
 MomentTerms moment_terms(const MomentProblem& problem, unsigned threads, const Monitor& monitor) {
   const int lmax = problem.lmax;
   MomentTerms result;
-  result.sum.lmax = lmax;
-  result.sum.origin = problem.origin;
-  result.sum.reference_radius = problem.reference_radius;
-  result.sum.density = problem.density;
-  result.sum.values.resize(Coefficients::count(lmax));
+  result.sum = Multipoles(problem);
   result.root.resize(std::size_t(lmax) + 1);
   if (problem.faces.empty()) return result;
 
@@ -221,8 +217,7 @@ MomentTerms moment_terms(const MomentProblem& problem, unsigned threads, const M
         re += p->degree(l)[2 * m];
         im += p->degree(l)[2 * m + 1];
       }
-      result.sum.values[Coefficients::index(l, m)] =
-          std::copysign(factor, problem.density) * std::complex(re, m == 0 ? 0.0 : im);
+      result.sum(l, m) = std::copysign(factor, problem.density) * std::complex(re, m == 0 ? 0.0 : im);
     }
   }
   // Of thin bodies and far origins the sum of all is far smaller than its terms.
@@ -234,7 +229,7 @@ MomentTerms moment_terms(const MomentProblem& problem, unsigned threads, const M
 
 std::uint64_t moment_terms_bytes(const MomentProblem& problem) {
   const std::uint64_t rows = blocks_at_once * (std::uint64_t(problem.lmax) + 8) * 6 * 8 * 8;
-  return 16 * Coefficients::count(problem.lmax) + 256 * std::uint64_t(problem.faces.size()) +
+  return 16 * Multipoles::count(problem.lmax) + 256 * std::uint64_t(problem.faces.size()) +
          partial_sums(problem) * (8 * row_offset(problem.lmax + 1) + rows + blocks_at_once * 6 * 8 * 8 +
                                   64 * std::uint64_t(problem.lmax) + 4096);
 }

@@ -55,7 +55,7 @@ void gather(const plan::Moments& plan, const PartialLayout& layout, std::span<co
       for (int j = 0; j < degrees_per_sweep; ++j) {
         const int l = 1 + int(n) * degrees_per_sweep + j;
         if (l > plan.lmax) break;
-        double* row = &sums[2 * Coefficients::index(l, 0)];
+        double* row = &sums[2 * Multipoles::by_degree(l, 0)];
         for (int m = 0; m <= l; ++m) {
           const double* from = column + std::ptrdiff_t{2} * (degrees_per_sweep * (m + j + degrees_per_sweep) + j);
           *row++ += from[0];
@@ -69,7 +69,7 @@ void gather(const plan::Moments& plan, const PartialLayout& layout, std::span<co
 
 } // namespace
 
-Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& monitor, RunReport* report) {
+Multipoles moments(const MomentProblem& problem, unsigned threads, Monitor& monitor, RunReport* report) {
   const auto start = Clock::now();
   if (threads == 0) threads = all_threads();
   const plan::Moments plan = plan::moments(problem, moments_lanes());
@@ -86,7 +86,7 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
   }
   std::vector<MomentsWorkspace> workspaces;
   for (unsigned t = 0; t < threads; ++t) workspaces.emplace_back(plan.lmax);
-  std::vector<double> sums(2 * Coefficients::count(plan.lmax), 0.0);
+  std::vector<double> sums(2 * Multipoles::count(plan.lmax), 0.0);
   sums[0] = std::ldexp(plan.sum_of_dets, plan.start_exponent);
   double done = 0;
   std::mutex done_mutex;
@@ -112,7 +112,7 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
     });
     gather(plan, layout, {partial.data(), round}, threads, sums);
   }
-  Coefficients result = plan::finish(problem, plan, sums);
+  Multipoles result = plan::finish(problem, plan, sums);
   if (report) *report = plan::report(plan, setup, seconds_since(start));
   return result;
 }
@@ -120,7 +120,7 @@ Coefficients moments(const MomentProblem& problem, unsigned threads, Monitor& mo
 std::uint64_t moments_bytes(const MomentProblem& problem, unsigned threads) {
   const PartialLayout layout(problem.lmax);
   return plan::bytes(problem) + round_size(layout, threads, partials(layout)) * 8 * layout.size() +
-         640 * std::uint64_t(threads) * (std::uint64_t(problem.lmax) + 48) + 32 * Coefficients::count(problem.lmax);
+         640 * std::uint64_t(threads) * (std::uint64_t(problem.lmax) + 48) + 32 * Multipoles::count(problem.lmax);
 }
 
 } // namespace cowgpu::cpu

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "host/backend.hpp"
-#include "host/coefficients.hpp"
 #include "host/flow/streamlines.hpp"
 #include "host/map/sphere_map.hpp"
 #include "host/mesh/raw_mesh.hpp"
+#include "host/multipoles.hpp"
 #include "host/physics/tip.hpp"
 #include "host/plot/canvas.hpp"
 #include "host/spectrum/reconstruct.hpp"
@@ -31,7 +31,7 @@ struct NamedExpansion {
 /// logarithmic axes: S_l = sum over m of |a_lm|^2. The panel of a kind that there is nothing of is left out. Throws
 /// Error(bad_argument) where there is nothing at all.
 plot::Canvas spectra_figure(plot::PictureFormat format, std::span<const NamedExpansion> expansions,
-                            const Coefficients* mass, const std::string& unit = mesh_unit);
+                            const Multipoles* mass, const std::string& unit = mesh_unit);
 
 /// Cow geometry reconstructed with progressively higher multipoles: orders 0 to 7 and the mesh, in nine panels of one
 /// scale with their names below. PNG. `title` may be empty. Throws what reconstruct() and Backend::render throw.

@@ -37,7 +37,7 @@ plot::Plot panel(const std::string& title, const std::string& unit) {
 } // namespace
 
 plot::Canvas spectra_figure(plot::PictureFormat format, std::span<const NamedExpansion> expansions,
-                            const Coefficients* mass, const std::string& unit) {
+                            const Multipoles* mass, const std::string& unit) {
   std::vector<plot::Plot> plots;
   if (!expansions.empty()) {
     const std::string titles[] = {"radius $f_r$", "polar angle $f_{Δθ}$", "azimuth $f_{Δφ}$"};

@@ -132,7 +132,7 @@ double monopole_at_large_times(std::span<const Vec3> vertices, const Vec3& origi
 
 SphereMap direction_map(std::span<const Vec3> positions, const Vec3& origin) {
   SphereMap map;
-  map.method = "flow";
+  map.method = MapMethod::flow;
   map.positions.reserve(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const Vec3 from = positions[v] - origin;

@@ -12,7 +12,7 @@
 
 namespace cowgpu {
 
-/// The directions of flowed vertices from `origin`: method "flow". Throws Error(map_failed) for a vertex that came to the
+/// The directions of flowed vertices from `origin`: method flow. Throws Error(map_failed) for a vertex that came to the
 /// origin itself.
 SphereMap direction_map(std::span<const Vec3> positions, const Vec3& origin);
 

@@ -41,7 +41,7 @@ public:
 
   const DeviceFacts& facts() const override { return facts_; }
 
-  Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
+  Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
     return gpu::watched(*gpu_, monitor, [&] { return gpu::moments(*gpu_, shape_, problem, monitor, report); });
   }
 

@@ -18,8 +18,8 @@ engine::MomentsShape shape_from(const GpuOptions& options) {
   return shape;
 }
 
-Coefficients moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const MomentProblem& problem,
-                     Monitor& monitor, RunReport* report) {
+Multipoles moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const MomentProblem& problem, Monitor& monitor,
+                   RunReport* report) {
   const auto start = Clock::now();
   const plan::Moments plan = plan::moments(problem, int(shape.lanes));
 
@@ -33,7 +33,7 @@ Coefficients moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const 
   const std::vector<double> pairs = plan::lane_inputs(plan, order);
   const double setup = seconds_since(start);
 
-  std::vector<double> sums(2 * Coefficients::count(problem.lmax), 0.0);
+  std::vector<double> sums(2 * Multipoles::count(problem.lmax), 0.0);
   sums[0] = std::ldexp(plan.sum_of_dets, plan.start_exponent);
   gpu.take_profile();
   engine::moments(gpu.device(), shape, {problem.lmax, plan.column_scale, plan.start_exponent, pairs, last_degrees},
@@ -41,7 +41,7 @@ Coefficients moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const 
                     monitor.progress("moments", done);
                     return !monitor.stopped();
                   });
-  Coefficients result = plan::finish(problem, plan, sums);
+  Multipoles result = plan::finish(problem, plan, sums);
   if (report) {
     *report = plan::report(plan, setup, seconds_since(start));
     for (const auto& k : gpu.take_profile()) report->kernels.push_back({k.kernel, k.dispatches, k.seconds});
@@ -53,7 +53,7 @@ MemoryNeed moments_memory(const engine::GpuFacts& facts, const engine::MomentsSh
                           const MomentProblem& problem) {
   const std::uint64_t groups = problem.faces.size() / shape.lanes + 1; // every face alone in its pair at worst
   MemoryNeed need;
-  need.host = plan::bytes(problem) + groups * shape.lanes * 128 + 48 * Coefficients::count(problem.lmax);
+  need.host = plan::bytes(problem) + groups * shape.lanes * 128 + 48 * Multipoles::count(problem.lmax);
   need.device = engine::moments_device_bytes(shape, facts, problem.lmax, groups);
   return need;
 }

@@ -10,8 +10,8 @@ namespace cowgpu::gpu {
 engine::MomentsShape shape_from(const GpuOptions& options);
 
 /// Backend::moments on an opened device. Throws engine::Error beside Error.
-Coefficients moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const MomentProblem& problem,
-                     Monitor& monitor, RunReport* report);
+Multipoles moments(engine::Gpu& gpu, const engine::MomentsShape& shape, const MomentProblem& problem, Monitor& monitor,
+                   RunReport* report);
 
 /// Host: the plan, 128 bytes a pair and 48 a coefficient. Device: see engine::moments_device_bytes().
 MemoryNeed moments_memory(const engine::GpuFacts& facts, const engine::MomentsShape& shape,

@@ -83,12 +83,12 @@ void take_units(CoefficientSet& set, const Metadata& metadata) {
 
 // What a table of `cowgpu expand` is of: the mass multipoles, the fields of a surface, or all columns.
 void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, const Metadata& metadata) {
-  const bool mass = set.names[0] == "mass" || (set.names[0].empty() && metadata.contains("reference_radius"));
-  if (set.names[0].empty()) set.names[0] = mass ? "mass" : "";
+  const bool mass = set.names[0] == mass_expansion || (set.names[0].empty() && metadata.contains("reference_radius"));
+  if (set.names[0].empty()) set.names[0] = mass ? mass_expansion : "";
   const auto starts = [](const std::string& surface) {
     return [surface](const std::string& field) { return field.starts_with(surface + "_"); };
   };
-  if (of.empty() || (of == "mass" && mass && set.fields == 1)) {
+  if (of.empty() || (of == mass_expansion && mass && set.fields == 1)) {
     if (mass && set.fields == 1) {
       set.kind = CoefficientKind::multipoles;
       if (!set.brillouin_radius) set.brillouin_radius = set.reference_radius; // as tables that lack it refer to
@@ -105,7 +105,8 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
   }
   std::vector<int> wanted;
   for (int f = 0; f < set.fields; ++f)
-    if (of == "mass" ? set.names[std::size_t(f)] == "mass" : starts(of)(set.names[std::size_t(f)])) wanted.push_back(f);
+    if (of == mass_expansion ? set.names[std::size_t(f)] == mass_expansion : starts(of)(set.names[std::size_t(f)]))
+      wanted.push_back(f);
   if (wanted.empty())
     throw Error(Fault::bad_argument, fmt::format("--of {}: {} has no such expansion; its columns are {}", of,
                                                  table.name, fmt::join(table.columns, ", ")));
@@ -114,8 +115,8 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
   chosen.provenance = set.provenance;
   for (std::size_t f = 0; f < wanted.size(); ++f) {
     const std::string& field = set.names[std::size_t(wanted[f])];
-    chosen.names[f] = of == "mass" ? field : field.substr(of.size() + 1);
-    if (of != "mass")
+    chosen.names[f] = of == mass_expansion ? field : field.substr(of.size() + 1);
+    if (of != mass_expansion)
       chosen.units[f] = chosen.names[f] == "f_dtheta" || chosen.names[f] == "f_dphi" ? "radian" : "length";
     for (int m = 0; m <= set.lmax; ++m)
       for (int l = m; l <= set.lmax; ++l) {
@@ -125,7 +126,7 @@ void choose(CoefficientSet& set, const std::string& of, const CsvTable& table, c
   }
   Metadata own;
   take_units(chosen, metadata);
-  if (of == "mass") {
+  if (of == mass_expansion) {
     chosen.kind = CoefficientKind::multipoles;
     for (const char* key : {"reference_radius", "brillouin_radius", "density", "origin"})
       if (metadata.contains(key)) own[key] = metadata.at(key);
@@ -183,7 +184,7 @@ CoefficientSet parse_csv_coefficients(std::string_view bytes, const std::string&
   if (!complex.empty() && !metadata.contains("fields") && fields > 1) set.names = complex;
   if (!complex.empty() && !metadata.contains("kind"))
     choose(set, of, table, metadata);
-  else if (!of.empty() && !(of == "mass" && set.kind == CoefficientKind::multipoles))
+  else if (!of.empty() && !(of == mass_expansion && set.kind == CoefficientKind::multipoles))
     throw Error(Fault::bad_argument,
                 fmt::format("--of {}: {} holds no expansions to choose from; the .json and .csv of `cowgpu expand` do",
                             of, table.name));

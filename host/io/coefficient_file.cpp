@@ -107,7 +107,8 @@ CoefficientFile read_coefficients(const std::filesystem::path& path, std::option
   }
   file.convention = set.convention;
   file.names = set.names;
-  if (set.kind == CoefficientKind::multipoles && set.names == std::vector<std::string>{""}) file.names = {"mass"};
+  if (set.kind == CoefficientKind::multipoles && set.names == std::vector<std::string>{""})
+    file.names = {mass_expansion};
   file.notes = set.notes;
   if (set.kind == CoefficientKind::multipoles && set.reference_radius) {
     std::string r;

@@ -73,7 +73,7 @@ void write_coefficient_set(const CoefficientSet& set, CoefficientFormat format, 
 CoefficientFile read_coefficients(const std::filesystem::path& path, std::optional<double> metres = {});
 
 /// Writes them in `convention`; commit() is left to the caller. Throws Error(cannot_write, too_large), and bad_argument as
-/// to_real() does.
+/// set_of() does.
 void write_coefficients(const CoefficientFile& coefficients, FileFormat format, AtomicFile& file);
 
 } // namespace cowgpu

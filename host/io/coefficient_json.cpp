@@ -136,14 +136,14 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
   CoefficientSet set;
   const bool mass = !expansion.contains("fields");
   set.form = Form::complex;
-  set.names = mass ? std::vector<std::string>{"mass"}
+  set.names = mass ? std::vector<std::string>{mass_expansion}
                    : words_of(name, result_json::member(name, expansion, "fields"), "fields");
   take_values(result_json::coefficients(name, expansion, field_count(name, set.names.size()), largest_file_degree),
               set);
   set.units.resize(set.names.size());
   Metadata metadata;
   if (expansion.contains("origin")) metadata["origin"] = origin_text(name, expansion);
-  const bool metric = all.contains("mesh") && result_json::placement(name, all).metric;
+  const bool metric = all.contains("mesh") && result_json::placement(name, all).units.stated;
   set.length_unit = metric ? "m" : mesh_length_unit;
   if (mass) {
     set.kind = CoefficientKind::multipoles;

@@ -38,7 +38,7 @@ void require_faces(const PlyMesh& file, const std::vector<Face>& faces, const st
 }
 
 // What the file's comments say of the mesh and the method, where they do.
-void require_story(const PlyMesh& file, const RawMesh& mesh, const std::string& method, const std::string& name) {
+void require_story(const PlyMesh& file, const RawMesh& mesh, std::optional<MapMethod> method, const std::string& name) {
   for (const std::string& comment : file.comments) {
     if (comment.starts_with(hash_word) && !mesh.sha256.empty() && comment.substr(hash_word.size()) != mesh.sha256)
       throw Error(
@@ -46,9 +46,9 @@ void require_story(const PlyMesh& file, const RawMesh& mesh, const std::string& 
           fmt::format("{} was made for a mesh of SHA-256 {}, and this one has {}: make the map again, or, where "
                       "only the wording of the mesh's file differs, take that comment out of {}",
                       name, shown(comment.substr(hash_word.size())), mesh.sha256, name));
-    if (!method.empty() && comment.starts_with(method_word) && comment.substr(method_word.size()) != method)
+    if (method && comment.starts_with(method_word) && comment.substr(method_word.size()) != cowgpu::name(*method))
       throw Error(Fault::file_format, fmt::format("{} holds a map by the method {}, not {}", name,
-                                                  shown(comment.substr(method_word.size())), method));
+                                                  shown(comment.substr(method_word.size())), cowgpu::name(*method)));
   }
 }
 
@@ -67,24 +67,24 @@ void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat f
   sphere.vertices = map.positions;
   sphere.faces = mesh.faces;
   if (format == MapFormat::ply) {
-    std::vector<std::string> comments = {std::string(method_word) + map.method, std::string(hash_word) + mesh.sha256};
+    std::vector<std::string> comments = {std::string(method_word).append(name(map.method)), std::string(hash_word) + mesh.sha256};
     comments.insert(comments.end(), map.notes.begin(), map.notes.end());
     write_ply(sphere, comments, file);
     return;
   }
   GlbAbout about;
   about.length_unit = "radius of the sphere";
-  about.facts = {{"map", map.method}, {"mesh_sha256", mesh.sha256}};
+  about.facts = {{"map", std::string(name(map.method))}, {"mesh_sha256", mesh.sha256}};
   const std::array part = {GlbPart{&sphere}};
   write_glb(part, about, file);
 }
 
-SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface, const std::string& method) {
+SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface, std::optional<MapMethod> method) {
   return read_map(read_input_file(path), path.string(), surface, method);
 }
 
 SphereMap read_map(std::string_view bytes, const std::string& name, const ManifoldSurface& surface,
-                   const std::string& method) {
+                   std::optional<MapMethod> method) {
   PlyMesh file = read_ply_positions(bytes, name);
   const std::size_t vertices = surface.vertices().size();
   if (file.vertices.size() != vertices)
@@ -97,7 +97,7 @@ SphereMap read_map(std::string_view bytes, const std::string& name, const Manifo
   for (const Face& f : surface.faces())
     for (const std::uint32_t v : f) used[v] = true;
   SphereMap map;
-  map.method = "file";
+  map.method = MapMethod::file;
   for (std::size_t v = 0; v < vertices; ++v) {
     if (!used[v]) {
       file.vertices[v] = Vec3::Zero();

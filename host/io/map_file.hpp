@@ -6,6 +6,7 @@
 #include "host/mesh/triangle_surface.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,13 +23,13 @@ MapFormat map_format(const std::filesystem::path& path);
 /// the facts as comments; GLB holds floats, for viewers. Throws what write_ply() and write_glb() throw.
 void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat format, AtomicFile& file);
 
-/// Reads a PLY file (read_ply_positions) as a map of this surface, method "file". Throws Error with cannot_read and the
+/// Reads a PLY file (read_ply_positions) as a map of this surface, method file. Throws Error with cannot_read and the
 /// faults of read_ply_positions(); file_format where vertices or faces are not those of the mesh, in number and order,
-/// where the comments that write_map() writes name another mesh's hash or, unless `method` is empty, another method, or
+/// where the comments that write_map() writes name another mesh's hash or, where `method` is given, another method, or
 /// where a vertex of a face is further than 1e-9 from the unit sphere. Whether it is one-to-one, judge() says.
-SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface, const std::string& method = {});
+SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface, std::optional<MapMethod> method = {});
 /// The same of the bytes of a file; `name` opens every message.
 SphereMap read_map(std::string_view bytes, const std::string& name, const ManifoldSurface& surface,
-                   const std::string& method = {});
+                   std::optional<MapMethod> method = {});
 
 } // namespace cowgpu

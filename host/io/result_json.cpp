@@ -1,5 +1,6 @@
 #include "host/io/result_json.hpp"
 
+#include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 #include "host/io/foreign_file.hpp"
 #include "host/io/shown.hpp"
@@ -109,11 +110,11 @@ Placement placement(const std::string& name, const json& document) {
   if (!mesh.is_object() || !mesh.contains("placement")) return placement;
   const json& object = mesh.at("placement");
   if (!member(name, object, "metres_per_unit").is_null()) {
-    placement.metric = true;
-    placement.scale = number(name, object, "metres_per_unit");
+    placement.units.stated = true;
+    placement.units.metre = number(name, object, "metres_per_unit");
   }
   const json& rows = member(name, object, "rotation");
-  bool matrix = placement.scale > 0 && rows.is_array() && rows.size() == 3;
+  bool matrix = placement.units.metre > 0 && rows.is_array() && rows.size() == 3;
   for (int row = 0; matrix && row < 3; ++row) {
     const json& line = rows[std::size_t(row)];
     matrix = line.is_array() && line.size() == 3;
@@ -139,12 +140,12 @@ const json& expansion(const std::string& name, const json& result, const std::st
     throw Error(Fault::bad_argument, fmt::format("--of {}: {} has no such expansion; there is {}", of, name,
                                                  there.empty() ? "none" : there));
   }
-  if (expansions.is_object() && !expansions.empty() && !expansions.contains("mass"))
+  if (expansions.is_object() && !expansions.empty() && !expansions.contains(mass_expansion))
     throw Error(Fault::file_format,
                 fmt::format("{}: this file holds surfaces and no mass moments; `cowgpu expand --of ... -o FILE.csv` "
                             "writes the coefficients of surfaces so that they can be read here",
                             name));
-  return member(name, expansions, "mass");
+  return member(name, expansions, mass_expansion);
 }
 
 SphereCoefficients coefficients(const std::string& name, const json& expansion, int fields, int largest) {

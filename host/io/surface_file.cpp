@@ -1,8 +1,10 @@
 #include "host/io/surface_file.hpp"
 
+#include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 #include "host/io/result_json.hpp"
 #include "host/io/shown.hpp"
+#include "host/map/map_method.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +27,7 @@ std::string chosen(const std::string& name, const json& expansions, const std::s
   if (!expansions.is_object())
     throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' must be an object", name));
   for (const auto& [key, value] : expansions.items())
-    if (key != "mass") there.push_back(key);
+    if (key != mass_expansion) there.push_back(key);
   const auto has = [&](const std::string& key) { return std::find(there.begin(), there.end(), key) != there.end(); };
   if (there.empty())
     throw Error(Fault::file_format,
@@ -39,7 +41,7 @@ std::string chosen(const std::string& name, const json& expansions, const std::s
     throw Error(Fault::bad_argument,
                 fmt::format("--of {}: {} has no such expansion of a surface; there is {}", of, name, list));
   }
-  if (has("stretch")) return "stretch";
+  if (const std::string stretch(cowgpu::name(MapMethod::stretch)); has(stretch)) return stretch;
   if (there.size() == 1) return there.front();
   throw Error(Fault::bad_argument,
               fmt::format("{} has several expansions of a surface: {}; choose one with --of", name, list));

@@ -193,7 +193,7 @@ SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& op
   x[pole] = SpherePoint(0, 0, -1);
 
   SphereMap map;
-  map.method = "harmonic";
+  map.method = MapMethod::harmonic;
   const Vec3& place = surface.vertices()[pole];
   map.notes.push_back(fmt::format("vertex {} at ({:.6g}, {:.6g}, {:.6g}) was taken out and its {} neighbours, from "
                                   "vertex {} on, laid on a circle by arc length",

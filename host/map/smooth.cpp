@@ -155,7 +155,7 @@ SphereMap smooth_map(const ManifoldSurface& surface, const SmoothOptions& option
     if (half_edges.leaving(v) != HalfEdges::none)
       directions[v] = SpherePoint(x.row(v).transpose().cast<long double>()).normalized();
   SphereMap map;
-  map.method = "smooth";
+  map.method = MapMethod::smooth;
   map.notes.push_back(fmt::format("mean-curvature flow settled in {} steps (the last moved {:.1e}) to a sphere whose "
                                   "radii differ by {:.1e} of their mean",
                                   steps, moved / now.mean, now.deviation));

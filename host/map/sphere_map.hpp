@@ -1,6 +1,7 @@
 // A map of a closed genus-0 surface to the unit sphere.
 #pragma once
 
+#include "host/map/map_method.hpp"
 #include "host/mesh/closed_surface.hpp"
 
 #include <string>
@@ -12,7 +13,7 @@ namespace cowgpu {
 /// map that keeps the orientation sends a face seen counter-clockwise from outside the body to a spherical triangle seen
 /// counter-clockwise from outside the sphere.
 struct SphereMap {
-  std::string method;             ///< "harmonic", "stretch", "smooth", "flow", or "file"
+  MapMethod method = MapMethod::file;
   std::vector<Vec3> positions;    ///< unit vectors, one per vertex of the mesh, in its order; zero for unused vertices
   std::vector<std::string> notes; ///< sentences: what was chosen and what came of it ("vertex 408 deleted ...")
 };

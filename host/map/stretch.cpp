@@ -74,7 +74,7 @@ SphereMap stretch_map(const ManifoldSurface& surface, const StretchOptions& opti
   }
   std::vector<Vec3> positions = embedding.positions();
   const StretchSum sum(canonical.points, canonical.rings, options.lambda);
-  SphereMap map{"stretch", std::vector<Vec3>(surface.vertices().size(), Vec3::Zero()), {}};
+  SphereMap map{MapMethod::stretch, std::vector<Vec3>(surface.vertices().size(), Vec3::Zero()), {}};
   map.notes.push_back(fmt::format("relaxed {} {} after all {} vertices had their place", sweeps,
                                   sweeps == 1 ? "time" : "times", positions.size()));
   if (options.converge) {

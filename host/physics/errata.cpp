@@ -3,7 +3,7 @@
 #include "host/mesh/geometry.hpp"
 #include "host/physics/paper.hpp"
 #include "host/physics/radiate.hpp"
-#include "host/physics/tensors.hpp"
+#include "host/physics/rigid_body.hpp"
 #include "host/reference/potential.hpp"
 #include "host/spectrum/paper_tables.hpp"
 #include "host/sphere_grid.hpp"
@@ -47,10 +47,8 @@ double spherical_factor(const Eigen::Matrix3d& tensor) {
 
 // Integral of |Y_22|^2 over the sphere: Y_22 is what a moment Q_22 alone makes of the potential at r = 1.
 double norm_of_y22() {
-  Coefficients only;
-  only.lmax = 2;
-  only.values.resize(Coefficients::count(2));
-  only.values[Coefficients::index(2, 2)] = 1;
+  Multipoles only(2);
+  only(2, 2) = 1;
   const reference::ExteriorPotential<double> real_part(only);
   const SphereGrid grid = make_grid(GridKind::gauss_legendre, 8);
   double sum = 0;
@@ -77,7 +75,7 @@ Vec3 pivot(const Body& body) {
 
 std::vector<ErratumNumber> errata_numbers() {
   const double square = quadrupole_square(paper_quadrupole(), Vec3::UnitY()) * unit * unit;
-  Coefficients monopole;
+  Multipoles monopole;
   monopole.values = {1 / std::sqrt(4 * pi)};
   const double far = reference::ExteriorPotential<double>(monopole)(Vec3(3, 4, 12)).value * 13;
   int degree = 0;
@@ -94,16 +92,16 @@ std::vector<ErratumNumber> errata_numbers() {
 }
 
 std::vector<ErratumNumber> errata_numbers(const Body& benchmark) {
-  const MassTensors tensors = about_centre(mass_tensors(benchmark));
+  const RigidBody body = about_centre(rigid_body(benchmark));
   const Vec3 p = pivot(benchmark);
   const RawMesh& mesh = benchmark.surface.mesh();
   const double unit_of_length = paper::length / bounding_box(mesh.vertices, mesh.faces).longest_side();
-  return {{5, "Im Q_22", spherical_quadrupole(tensors.quadrupole)[2].imag(), paper::q22_im},
-          {7, "deficit with exact tensors", deficit(tensors.quadrupole, tensors.inertia()(1, 1)), paper::deficit},
+  return {{5, "Im Q_22", spherical_quadrupole(body.quadrupole)[2].imag(), paper::q22_im},
+          {7, "deficit with exact tensors", deficit(body.quadrupole, body.inertia()(1, 1)), paper::deficit},
           {11, "lever of the lowest hoof about x", p.z(), std::hypot(p.x(), p.z())},
           {14, "volume", benchmark.volume, paper::volume},
           {14, "mass in kg", benchmark.volume * mass, paper::mass_kg},
-          {14, "Q_00", tensors.mass / std::sqrt(4 * pi), paper::q00},
+          {14, "Q_00", body.mass / std::sqrt(4 * pi), paper::q00},
           {18, "length of the mesh", paper::length / unit_of_length, paper::box_length},
           {18, "unit of length in m", unit_of_length, paper::length_unit_m},
           {18, "power at fixed density, over that of 2.39 m", std::pow(unit_of_length / length, 10), 1},

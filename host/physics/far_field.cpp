@@ -3,7 +3,7 @@
 #include "host/mesh/geometry.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/moments.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 
@@ -59,11 +59,9 @@ FarField::FarField(const Body& body, const Monitor& monitor) {
   }
   bound_ = std::fabs(body.density) * bound_of(body.surface, centre);
   for (const Part& part : body.parts) bound_ += std::fabs(part.density) * bound_of(part.surface, centre);
-  Coefficients moments;
-  moments.lmax = degree;
+  Multipoles moments(degree);
   moments.origin = centre;
   moments.reference_radius = radius;
-  moments.values.resize(Coefficients::count(degree));
   for (std::size_t i = 0; i < moments.values.size(); ++i)
     moments.values[i] = {double(sum[2 * i]), double(sum[2 * i + 1])};
   sizes_ = degree_sizes(moments, radius);

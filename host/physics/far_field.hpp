@@ -1,9 +1,9 @@
 // The field of a body of uniform parts far away, where the polyhedron's closed form is the difference of large numbers.
 #pragma once
 
-#include "host/coefficients.hpp"
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
+#include "host/multipoles.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/reference/potential.hpp"
 

@@ -1,7 +1,7 @@
 #include "host/physics/potential.hpp"
 
 #include "host/error.hpp"
-#include "host/physics/tensors.hpp"
+#include "host/physics/rigid_body.hpp"
 #include "host/spectrum/convert.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 namespace cowgpu::physics {
 
-Coefficients mass_moments(const CoefficientSet& set, int lmax) {
+Multipoles mass_moments(const CoefficientSet& set, int lmax) {
   check_mass_multipoles(set);
   ConversionTarget target;
   target.kind = CoefficientKind::multipoles;
@@ -20,19 +20,15 @@ Coefficients mass_moments(const CoefficientSet& set, int lmax) {
   const CoefficientSet low = converted(set, target);
   if (!low.reference_radius || !(*low.reference_radius > 0))
     throw Error(Fault::file_format, "these coefficients do not say their reference radius");
-  const SphereCoefficients q = orthonormal(low);
-  Coefficients moments;
-  moments.lmax = low.lmax;
+  Multipoles moments(low.lmax);
   moments.origin = set.origin.value_or(Vec3::Zero());
   moments.reference_radius = *low.reference_radius;
   moments.density = set.density.value_or(1);
-  moments.values.resize(Coefficients::count(low.lmax));
-  for (int l = 0; l <= low.lmax; ++l)
-    for (int m = 0; m <= l; ++m) moments.values[Coefficients::index(l, m)] = q.at(0, l, m);
+  moments.values = orthonormal(low).values;
   return set.brillouin_radius ? over_radius(std::move(moments), *set.brillouin_radius) : moments;
 }
 
-Coefficients over_radius(Coefficients moments, double radius) {
+Multipoles over_radius(Multipoles moments, double radius) {
   if (!(radius > 0) || !std::isfinite(radius))
     throw Error(Fault::bad_argument, fmt::format("the radius of the moments is {}: it must be above 0", radius));
   if (radius == moments.reference_radius) return moments;
@@ -40,7 +36,7 @@ Coefficients over_radius(Coefficients moments, double radius) {
   for (int l = 0; l <= moments.lmax; ++l) {
     const long double factor = std::pow(ratio, (long double)(l));
     for (int m = 0; m <= l; ++m) {
-      std::complex<double>& q = moments.values[Coefficients::index(l, m)];
+      std::complex<double>& q = moments(l, m);
       const auto times = [&](double part) { return part == 0 ? 0 : double(factor * part); };
       q = {times(q.real()), times(q.imag())};
       if (!std::isfinite(q.real()) || !std::isfinite(q.imag()))
@@ -54,7 +50,7 @@ Coefficients over_radius(Coefficients moments, double radius) {
   return moments;
 }
 
-std::vector<double> degree_sizes(const Coefficients& moments, double radius) {
+std::vector<double> degree_sizes(const Multipoles& moments, double radius) {
   std::vector<double> sizes;
   const long double ratio = (long double)(moments.reference_radius) / radius;
   for (int l = 0; l <= moments.lmax; ++l) {
@@ -66,14 +62,14 @@ std::vector<double> degree_sizes(const Coefficients& moments, double radius) {
   return sizes;
 }
 
-double term_growth(const Coefficients& moments, int lmax, double radius) {
+double term_growth(const Multipoles& moments, int lmax, double radius) {
   const std::vector<double> sizes = degree_sizes(moments, radius);
   const auto half = sizes.begin() + lmax / 2 + 1, end = sizes.begin() + lmax + 1;
   const double low = *std::max_element(sizes.begin(), half), high = half < end ? *std::max_element(half, end) : 0;
   return high == 0 ? 0 : high / low;
 }
 
-Coefficients in_si(Coefficients moments, double metres, double kilograms) {
+Multipoles in_si(Multipoles moments, double metres, double kilograms) {
   moments.origin *= metres;
   moments.reference_radius *= metres;
   for (auto& q : moments.values) q *= kilograms;

@@ -18,22 +18,22 @@ inline constexpr double coulomb_constant_si = 8.9875517923e9;
 /// Multipoles of a file, of degrees 0 ... min(lmax, set.lmax), as moments about their own origin, over the radius of the
 /// sphere that holds the body, or where the file does not say that one over its reference radius. Throws Error(file_format) for coefficients of a surface and where no reference radius is stated; what converted()
 /// throws.
-Coefficients mass_moments(const CoefficientSet& set, int lmax);
+Multipoles mass_moments(const CoefficientSet& set, int lmax);
 
 /// The same moments over another reference radius; what is too small for a double becomes 0. Throws Error(bad_argument) for a
 /// radius that is not above 0 and finite, and one so small that a moment exceeds doubles.
-Coefficients over_radius(Coefficients moments, double radius);
+Multipoles over_radius(Multipoles moments, double radius);
 
 /// How large the terms of each degree of V are where r = `radius`: their root mean square over that sphere, in units of
 /// V = 1/r of the moments' mass unit, [l] for l = 0 ... moments.lmax.
-std::vector<double> degree_sizes(const Coefficients& moments, double radius);
+std::vector<double> degree_sizes(const Multipoles& moments, double radius);
 
 /// Where r = `radius` the largest term of the degrees above lmax/2 over the largest of those below, by degree_sizes(): above 1
 /// the series to degree lmax does not converge there.
-double term_growth(const Coefficients& moments, int lmax, double radius);
+double term_growth(const Multipoles& moments, int lmax, double radius);
 
 /// Moments whose unit of length is so many metres, and whose unit of mass so many kilograms, in SI.
-Coefficients in_si(Coefficients moments, double metres, double kilograms);
+Multipoles in_si(Multipoles moments, double metres, double kilograms);
 
 /// From V = integral of density/|x - y| to what it stands for, per unit of a test body. Gravity: potential -G V, acceleration
 /// G grad V, its gradient G dd V. Charges: potential k V, field -k grad V, its gradient -k dd V.

@@ -6,7 +6,7 @@
 
 namespace cowgpu::physics {
 
-PotentialTerms::PotentialTerms(const Coefficients& moments) : lmax_(moments.lmax) {
+PotentialTerms::PotentialTerms(const Multipoles& moments) : lmax_(moments.lmax) {
   const int top = lmax_ + 1;
   for (auto& set : sets_) set.assign(SphereCoefficients::count(top), 0);
   for (int m = 0; m <= top; ++m)

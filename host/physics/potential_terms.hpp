@@ -1,7 +1,7 @@
 // The series of a body's potential degree by degree: what each order leaves out, at places and over whole spheres.
 #pragma once
 
-#include "host/coefficients.hpp"
+#include "host/multipoles.hpp"
 #include "host/sphere_coefficients.hpp"
 #include "host/types.hpp"
 
@@ -25,7 +25,7 @@ public:
   /// Points that at() takes together.
   static constexpr std::size_t group = 8;
 
-  explicit PotentialTerms(const Coefficients& moments);
+  explicit PotentialTerms(const Multipoles& moments);
   int lmax() const { return lmax_; }
 
   /// Terms of degrees 0 ... lmax (at most lmax()) at up to `group` points in units of R, outside the unit sphere:

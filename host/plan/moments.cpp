@@ -259,13 +259,8 @@ std::uint64_t bytes(const MomentProblem& problem) {
   return std::uint64_t(problem.faces.size()) * 304 + std::uint64_t(problem.vertices.size()) * 8;
 }
 
-Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums) {
-  Coefficients result;
-  result.lmax = problem.lmax;
-  result.origin = problem.origin;
-  result.reference_radius = problem.reference_radius;
-  result.density = problem.density;
-  result.values.resize(Coefficients::count(problem.lmax));
+Multipoles finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums) {
+  Multipoles result(problem);
 
   std::vector<Extended> root(2 * std::size_t(problem.lmax) + 2), inverse_root(root.size());
   for (std::size_t n = 1; n < root.size(); ++n) {
@@ -279,9 +274,9 @@ Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span
     Extended factor = unit * std::sqrt((2 * degree + 1) / (4 * std::numbers::pi_v<Extended>)) /
                       ((degree + 1) * (degree + 2) * (degree + 3));
     for (int m = 0; m <= l; ++m) {
-      const std::size_t i = Coefficients::index(l, m);
+      const std::size_t i = Multipoles::by_degree(l, m);
       const Extended im = m == 0 ? 0 : factor * sums[2 * i + 1];
-      result.values[i] = {double(factor * sums[2 * i]), double(im)};
+      result(l, m) = {double(factor * sums[2 * i]), double(im)};
       if (m < l)
         factor *= root[std::size_t(l) + std::size_t(m) + 1] * inverse_root[std::size_t(l - m)] / plan.column_scale;
     }

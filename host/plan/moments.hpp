@@ -32,8 +32,8 @@
 // below cut_off times the sum over all triangles: the error is then at most cut_off B_l with B_l of degree_bound().
 #pragma once
 
-#include "host/coefficients.hpp"
 #include "host/moment_problem.hpp"
+#include "host/multipoles.hpp"
 #include "host/run_report.hpp"
 
 #include <cstdint>
@@ -82,9 +82,9 @@ RunReport report(const Moments& plan, double setup_seconds, double seconds);
 /// Bound of the bytes moments() allocates: 304 a face and 8 a vertex.
 std::uint64_t bytes(const MomentProblem& problem);
 
-/// Turns the sums over all triangles of t_l[m] 2^start_exponent, real and imaginary parts interleaved in the order of
-/// Coefficients, into coefficients.
-Coefficients finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums);
+/// Turns the sums over all triangles of t_l[m] 2^start_exponent, real and imaginary parts interleaved, sorted by
+/// l, then m, into multipoles.
+Multipoles finish(const MomentProblem& problem, const Moments& plan, std::span<const double> sums);
 
 /// B_l = |density| R^3 sqrt((2l+1)/4pi)/(l+3) sum |det|/2 r^l for l = 0 ... lmax, in the units of Q_lm / R^l, r and det
 /// taken after division by R: an a-priori bound of |Q_lm / R^l|, and of the norm of degree l over all orders.

@@ -19,12 +19,12 @@ constexpr double pi = std::numbers::pi;
 
 // Coefficients of a real series in J_lm, those of m < 0 following from a_l,-m = (-1)^m conj(a_lm).
 struct Set {
-  explicit Set(int top) : values(Coefficients::count(top)) {}
-  Complex& at(int l, int m) { return values[Coefficients::index(l, m)]; }
+  explicit Set(int top) : values(Multipoles::count(top)) {}
+  Complex& at(int l, int m) { return values[Multipoles::by_degree(l, m)]; }
   /// 0 where there is none.
   Complex operator()(int l, int m) const {
     if (l < 0 || std::abs(m) > l) return 0;
-    const Complex a = values[Coefficients::index(l, std::abs(m))];
+    const Complex a = values[Multipoles::by_degree(l, std::abs(m))];
     return m >= 0 ? a : m % 2 ? -std::conj(a) : std::conj(a);
   }
   std::vector<Complex> values;
@@ -136,7 +136,7 @@ PotentialSeries potential_series(const PotentialProblem& problem) {
   }
   for (std::size_t s = 0; s < sets.size(); ++s) add_bounds(sets[s], top, series.bounds[s == 0 ? 0 : s < 4 ? 1 : 2]);
 
-  series.table.reserve(series.stride() * Coefficients::count(top));
+  series.table.reserve(series.stride() * Multipoles::count(top));
   for (int m = 0; m <= top; ++m)
     for (int l = m; l <= top; ++l) {
       const double a = std::sqrt(double(2 * l + 1) * double(2 * l + 3) / (double(l + 1 - m) * double(l + 1 + m)));
@@ -222,7 +222,7 @@ PotentialField potential_field(const PotentialProblem& problem, const PotentialP
 }
 
 std::uint64_t potential_bytes(std::uint64_t points, int lmax, Derivatives derivatives) {
-  const std::uint64_t sets = potential_sets(derivatives), entries = Coefficients::count(lmax + int(derivatives));
+  const std::uint64_t sets = potential_sets(derivatives), entries = Multipoles::count(lmax + int(derivatives));
   const std::uint64_t padded = points + PotentialPoints::block;
   // The table beside the sets it is made from; sums and field.
   return entries * (16 + 32 * sets) + padded * (8 + 4 + 48 + 8 * sets + 8 * (1 + 3 + 6));

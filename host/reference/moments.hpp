@@ -2,9 +2,9 @@
 #pragma once
 
 #include "host/determinant.hpp"
-#include "host/coefficients.hpp"
 #include "host/moment_problem.hpp"
 #include "host/monitor.hpp"
+#include "host/multipoles.hpp"
 #include "host/parallel.hpp"
 
 #include <algorithm>
@@ -90,7 +90,7 @@ inline std::vector<int> last_degrees(std::vector<double> sizes, std::span<const 
   return last;
 }
 
-/// Q_lm / R^l of `problem` in `Real`, real and imaginary parts interleaved in the order of Coefficients: the chained
+/// Q_lm / R^l of `problem` in `Real`, real and imaginary parts interleaved in the order of Multipoles: the chained
 /// recursion of host/plan/moments.hpp in orthonormal harmonics, one triangle at a time, no pairing, no scaling.
 /// `tolerance` > 0 leaves out a triangle from the degree on at which faces * |det|/2 r^l is at most tolerance times the
 /// sum over all triangles, which bounds the error by tolerance * degree_bound() (host/plan/moments.hpp); 0 leaves out
@@ -143,10 +143,10 @@ std::vector<Real> moments(const MomentProblem& problem, double tolerance = 0, co
   const std::size_t tasks = std::min<std::size_t>(blocks, 8);
   const std::size_t at_once = std::min<std::size_t>(tasks, all_threads());
   std::vector<std::vector<Real>> partial(at_once);
-  std::vector<Real> result(2 * Coefficients::count(problem.lmax), Real(0));
+  std::vector<Real> sums(2 * Multipoles::count(problem.lmax), Real(0)); // by degree, as the partial ones
   const Real unit = Real(problem.density) * radius * radius * radius;
   const auto run_task = [&](std::size_t task, std::vector<Real>& sum) {
-    sum.assign(2 * Coefficients::count(problem.lmax), Real(0));
+    sum.assign(2 * Multipoles::count(problem.lmax), Real(0));
     const Real y00 = 1 / sqrt(4 * acos(Real(-1)));
     for (std::size_t b = task; b < blocks; b += tasks) {
       const std::size_t first = b * block, last = std::min(first + block, faces);
@@ -175,7 +175,7 @@ std::vector<Real> moments(const MomentProblem& problem, double tolerance = 0, co
           const Real weight = triangle.det / Real(double(l + 1) * double(l + 2) * double(l + 3));
           const Row<Real>& q = rows[t - first][2];
           for (int m = 0; m <= l; ++m) {
-            const std::size_t i = 2 * Coefficients::index(l, m);
+            const std::size_t i = 2 * Multipoles::by_degree(l, m);
             sum[i] += weight * q[std::size_t(m)].re;
             sum[i + 1] += weight * q[std::size_t(m)].im;
           }
@@ -187,8 +187,13 @@ std::vector<Real> moments(const MomentProblem& problem, double tolerance = 0, co
     const std::size_t round = std::min(at_once, tasks - first);
     parallel_for(0, round, [&](std::size_t k, unsigned) { run_task(first + k, partial[k]); });
     for (std::size_t k = 0; k < round; ++k)
-      for (std::size_t i = 0; i < result.size(); ++i) result[i] += unit * partial[k][i];
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += unit * partial[k][i];
   }
+  std::vector<Real> result(sums.size());
+  for (int l = 0; l <= problem.lmax; ++l)
+    for (int m = 0; m <= l; ++m)
+      for (std::size_t part = 0; part < 2; ++part)
+        result[2 * Multipoles::index(problem.lmax, l, m) + part] = sums[2 * Multipoles::by_degree(l, m) + part];
   if constexpr (std::is_floating_point_v<Real>) { // the mass is as good as the input, whatever cancels
     const auto dets = Real(sum_of_determinants(problem.vertices, problem.faces, problem.origin));
     result[0] = Real(problem.density) * dets / (6 * sqrt(4 * acos(Real(-1))));

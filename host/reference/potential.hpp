@@ -9,7 +9,7 @@
 //   (d/dx + i d/dy) I_lm = sqrt(k (l+m+1)(l+m+2)) I_{l+1,m+1}.
 #pragma once
 
-#include "host/coefficients.hpp"
+#include "host/multipoles.hpp"
 
 #include <Eigen/Core>
 
@@ -41,7 +41,7 @@ public:
   using Complex = std::complex<Real>;
 
   /// Degrees 0 ... min(lmax, moments.lmax). The moments are copied.
-  explicit ExteriorPotential(const Coefficients& moments, int lmax = 1 << 30)
+  explicit ExteriorPotential(const Multipoles& moments, int lmax = 1 << 30)
       : lmax_(std::min(lmax, moments.lmax)), radius_(Real(moments.reference_radius)) {
     using std::sqrt, std::acos;
     for (int k = 0; k <= 2 * lmax_ + 7; ++k) root_.push_back(sqrt(Real(k)));
@@ -62,7 +62,7 @@ public:
   PotentialAt<Real> operator()(const Vector& x) const {
     const std::vector<Complex> harmonics = irregular_harmonics(x);
     const auto harmonic = [&](int l, int m) {
-      const Complex h = harmonics[Coefficients::index(l, std::abs(m))];
+      const Complex h = harmonics[Multipoles::by_degree(l, std::abs(m))];
       return m >= 0 ? h : m % 2 ? -std::conj(h) : std::conj(h);
     };
     const auto along_z = [&](int l, int m) {
@@ -75,7 +75,7 @@ public:
     Complex p(0), pz(0), pp(0); // d/dx + i d/dy is p
     for (int l = lmax_; l >= 0; --l)
       for (int m = -l; m <= l; ++m) {
-        Complex a = terms_[Coefficients::index(l, std::abs(m))];
+        Complex a = terms_[Multipoles::by_degree(l, std::abs(m))];
         if (m < 0) a = m % 2 ? -std::conj(a) : std::conj(a);
         v += (a * harmonic(l, m)).real();
         z += along_z(l, m) * (a * harmonic(l + 1, m)).real();
@@ -101,7 +101,7 @@ private:
   std::vector<Complex> irregular_harmonics(const Vector& x) const {
     using std::sqrt;
     const int top = lmax_ + 2;
-    std::vector<Complex> h(Coefficients::count(top));
+    std::vector<Complex> h(Multipoles::count(top));
     // Divided before squares are formed: they neither overflow nor vanish.
     const Vector u = x / radius_;
     const Real r2 = u.squaredNorm(), z = u[2] / r2;
@@ -109,15 +109,15 @@ private:
     Complex start(first_ / sqrt(r2));
     for (int m = 0; m <= top; ++m) {
       if (m > 0) start = start * across * (-root(2 * m + 1) / root(2 * m));
-      h[Coefficients::index(m, m)] = start;
+      h[Multipoles::by_degree(m, m)] = start;
       for (int l = m + 1; l <= top; ++l) {
         const Real a = root(2 * l - 1) * root(2 * l + 1) / (root(l - m) * root(l + m));
-        Complex next = a * z * h[Coefficients::index(l - 1, m)];
+        Complex next = a * z * h[Multipoles::by_degree(l - 1, m)];
         if (l > m + 1) {
           const Real b = a * root(l - 1 - m) * root(l - 1 + m) / (root(2 * l - 3) * root(2 * l - 1));
-          next -= b / r2 * h[Coefficients::index(l - 2, m)];
+          next -= b / r2 * h[Multipoles::by_degree(l - 2, m)];
         }
-        h[Coefficients::index(l, m)] = next;
+        h[Multipoles::by_degree(l, m)] = next;
       }
     }
     return h;

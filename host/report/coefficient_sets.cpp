@@ -18,11 +18,11 @@ Provenance provenance_of(const ExpandResult& result) {
 }
 
 std::string length_unit(const Body& body) {
-  return body.placement.metric ? "m" : std::string(mesh_length_unit);
+  return body.units().stated ? "m" : std::string(mesh_length_unit);
 }
 
 std::string mass_unit(const Body& body) {
-  return body.placement.metric ? "kg" : std::string(mesh_mass_unit);
+  return body.units().stated ? "kg" : std::string(mesh_mass_unit);
 }
 
 double second_moment_of(const ExpandResult& result) {
@@ -31,7 +31,7 @@ double second_moment_of(const ExpandResult& result) {
 }
 
 CoefficientSet mass_set(const ExpandResult& result) {
-  const Coefficients& q = result.mass;
+  const Multipoles& q = result.mass;
   CoefficientSet set(q.lmax, 1);
   set.kind = CoefficientKind::multipoles;
   set.form = Form::complex;
@@ -40,7 +40,7 @@ CoefficientSet mass_set(const ExpandResult& result) {
       set.first[set.index(0, l, m)] = q(l, m).real();
       set.second[set.index(0, l, m)] = q(l, m).imag();
     }
-  set.names = {"mass"};
+  set.names = {mass_expansion};
   set.reference_radius = q.reference_radius;
   set.brillouin_radius = result.body.brillouin_radius;
   set.origin = q.origin;
@@ -70,7 +70,7 @@ CoefficientSet surface_set(const ExpandResult& result, const SurfaceResult& surf
   set.origin_kind = surface.origin_kind;
   set.length_unit = length_unit(result.body);
   set.provenance = provenance_of(result);
-  set.remarks = {{"map", surface.map.method}, {"recipe", surface.recipe}};
+  set.remarks = {{"map", std::string(name(surface.map.method))}, {"recipe", surface.recipe}};
   for (const auto& [field, mean] :
        {std::pair("f_dtheta", expansion.mean_dtheta), std::pair("f_dphi", expansion.mean_dphi)}) {
     std::string text;

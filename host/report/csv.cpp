@@ -20,7 +20,7 @@ std::string numbers(const Vec3& v) {
 }
 
 std::string mass_comments(const ExpandResult& result) {
-  const Coefficients& q = result.mass;
+  const Multipoles& q = result.mass;
   std::string text =
       "# Q_lm / R^l, Q_lm = integral of density r^l Y_lm, not conjugated; orthonormal, Condon-Shortley phase;\n"
       "# theta from +z, phi from +x towards +y, axes of the mesh; Q_l,-m = (-1)^m conj Q_lm\n";
@@ -48,11 +48,11 @@ std::string mass_comments(const ExpandResult& result) {
 std::string surface_comments(const SurfaceResult& surface) {
   const SurfaceExpansion& e = surface.expansion;
   std::string text =
-      fmt::format("# {}: map {}{}, recipe {}; dphi {}\n# {}_origin ({}) {}\n", surface.name, surface.map.method,
-                  surface.map_file.empty() ? "" : " " + surface.map_file, surface.recipe,
-                  e.signed_dphi ? "signed" : "absolute", surface.name, surface.origin_kind, numbers(e.origin));
+      fmt::format("# {}: map {}{}, recipe {}; dphi {}\n# {}_origin ({}) {}\n", name(surface.of),
+                  name(surface.map.method), surface.map_file.empty() ? "" : " " + surface.map_file, surface.recipe,
+                  e.signed_dphi ? "signed" : "absolute", name(surface.of), surface.origin_kind, numbers(e.origin));
   for (const auto& [field, mean] : {std::pair("f_dtheta", e.mean_dtheta), std::pair("f_dphi", e.mean_dphi)}) {
-    text += fmt::format("# {}_removed_mean_{} ", surface.name, field);
+    text += fmt::format("# {}_removed_mean_{} ", name(surface.of), field);
     append_number(text, mean);
     text += "\n";
   }
@@ -90,7 +90,8 @@ void write_csv(const ExpandResult& result, const Sink& sink) {
   }
   for (const SurfaceResult& surface : result.surfaces) {
     text += surface_comments(surface);
-    for (const char* field : surface_field_names) columns += fmt::format(",{0}_{1}_re,{0}_{1}_im", surface.name, field);
+    for (const char* field : surface_field_names)
+      columns += fmt::format(",{0}_{1}_re,{0}_{1}_im", name(surface.of), field);
   }
   text += columns + "\n";
   for (int l = 0; l <= lmax; ++l)

@@ -1,7 +1,9 @@
+#include "host/coefficient_set.hpp"
 #include "host/io/number.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
@@ -47,7 +49,7 @@ ordered_json json_of(const Body& body) {
                        {"bounding_box", {json_of(body.box.min), json_of(body.box.max)}},
                        {"brillouin_radius", body.brillouin_radius},
                        {"placement", {{"metres_per_unit", nullptr}, {"rotation", json_of(body.placement.rotation)}}}};
-  if (body.placement.metric) json["placement"]["metres_per_unit"] = body.placement.scale;
+  if (body.units().stated) json["placement"]["metres_per_unit"] = body.units().metre;
   ordered_json parts = ordered_json::array();
   for (const Part& part : body.parts) parts.push_back(json_of(part));
   json["parts"] = parts;
@@ -98,7 +100,7 @@ ordered_json json_of(const Accuracy& accuracy) {
 }
 
 // The coefficients do not fit a document in memory at high degree: one row a line, written as they come.
-void write_coefficients(const Coefficients& q, const Sink& sink) {
+void write_coefficients(const Multipoles& q, const Sink& sink) {
   std::string text;
   for (int l = 0; l <= q.lmax; ++l)
     for (int m = 0; m <= l; ++m) {
@@ -117,7 +119,7 @@ void write_coefficients(const Coefficients& q, const Sink& sink) {
 }
 
 void write_mass(const ExpandResult& result, const Sink& sink) {
-  const bool metric = result.body.placement.metric;
+  const bool metric = result.body.units().stated;
   const ordered_json mass = {
       {"lmax", result.mass.lmax},
       {"origin", json_of(result.mass.origin)},
@@ -132,7 +134,7 @@ void write_mass(const ExpandResult& result, const Sink& sink) {
                     "; Q_lm = value * reference_radius^l"},
       {"density", result.mass.density},
       {"cut_off", result.cut_off}};
-  sink("\"mass\": " + json_members(mass) + ",\n \"coefficients\": [");
+  sink(fmt::format("\"{}\": ", mass_expansion) + json_members(mass) + ",\n \"coefficients\": [");
   write_coefficients(result.mass, sink);
   sink("\n]}");
 }
@@ -140,7 +142,7 @@ void write_mass(const ExpandResult& result, const Sink& sink) {
 } // namespace
 
 std::uint64_t json_bytes(int lmax) {
-  return 4096 + 80 * std::uint64_t(lmax) + 61 * std::uint64_t(Coefficients::count(lmax));
+  return 4096 + 80 * std::uint64_t(lmax) + 61 * std::uint64_t(Multipoles::count(lmax));
 }
 
 void write_json(const ExpandResult& result, const Sink& sink) {
@@ -154,7 +156,7 @@ void write_json(const ExpandResult& result, const Sink& sink) {
       {"notes", result.notes},
       {"tensors",
        {{"origin", json_of(result.body.origin)},
-        {"units", result.body.placement.metric ? "kg m^2" : "density * length^5, in the mesh's length unit"},
+        {"units", result.body.units().stated ? "kg m^2" : "density * length^5, in the mesh's length unit"},
         {"quadrupole", json_of(result.tensors.quadrupole)},
         {"inertia", json_of(result.tensors.inertia)},
         {"second_moment", json_of(result.tensors.second_moment)}}},
@@ -164,7 +166,7 @@ void write_json(const ExpandResult& result, const Sink& sink) {
   if (result.has_mass) write_mass(result, sink);
   bool first = !result.has_mass;
   for (const SurfaceResult& surface : result.surfaces) {
-    sink((first ? "\"" : ",\n \"") + surface.name + "\": ");
+    sink(fmt::format("{}\"{}\": ", first ? "" : ",\n ", name(surface.of)));
     write_surface_json(surface, sink);
     first = false;
   }

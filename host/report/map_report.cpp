@@ -106,7 +106,7 @@ void write_screen(const MapReport& report, const Sink& sink) {
   const RawMesh& mesh = *report.mesh;
   sink(mesh_line(mesh) + "\n");
   for (const std::string& note : report.notes) sink("note: " + note + "\n");
-  sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", report.map->method, report.map_seconds,
+  sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", name(report.map->method), report.map_seconds,
                    report.judge_seconds));
   for (const std::string& note : report.map->notes) sink("note: " + note + "\n");
   if (report.flow) {
@@ -152,7 +152,7 @@ void write_json(const MapReport& report, const Sink& sink) {
         {"sha256", mesh.sha256},
         {"vertices", mesh.vertices.size()},
         {"faces", mesh.faces.size()}}},
-      {"method", report.map->method},
+      {"method", name(report.map->method)},
       {"notes", notes},
       {"output", report.output.empty() ? ordered_json() : ordered_json(report.output)},
       {"quality", quality_json(report.quality)},

@@ -1,5 +1,6 @@
 #include "host/report/page.hpp"
 
+#include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 #include "host/io/file.hpp"
 #include "host/io/result_json.hpp"
@@ -219,7 +220,8 @@ std::string page_data(const PageDocument& document) {
     head["surfaces"].push_back(surface_json(surface, expansions));
     order = std::max(order, surface.order);
   }
-  head["mass"] = expansions.contains("mass") ? mass_json(name, expansions.at("mass")) : ordered_json(nullptr);
+  head["mass"] =
+      expansions.contains(mass_expansion) ? mass_json(name, expansions.at(mass_expansion)) : ordered_json(nullptr);
   head["mesh"] = mesh_json(document);
   head["order_names"] = ordered_json::array();
   for (int l = 0; l <= order; ++l) head["order_names"].push_back(order_name(l));

@@ -75,7 +75,7 @@ ordered_json measures_json(const SurfaceMeasures& m) {
 ordered_json order_json(const ReconstructReport& report, const RebuiltOrder& order) {
   ordered_json row = {{"order", order.order},
                       {"name", order_name(order.order)},
-                      {"description", describe_order(*report.expansion, report.fields, order.order)}};
+                      {"description", describe_order(report.expansion, report.fields, order.order)}};
   row.update(measures_json(order.measures));
   row["distance"] = nullptr;
   if (order.distance)
@@ -94,14 +94,21 @@ ordered_json order_json(const ReconstructReport& report, const RebuiltOrder& ord
 /// The mesh itself, about the expansion's origin.
 SurfaceMeasures mesh_measures(const ReconstructReport& report) {
   Body body = *report.body;
-  body.origin = report.expansion->origin;
+  body.origin = report.expansion.origin;
   return {body.volume, body.centre_of_mass, tensors(body).inertia};
 }
 
 } // namespace
 
+std::vector<std::string> order_facts(const ReconstructReport& report, int order) {
+  return {fmt::format("order {}, {}", order, order_name(order)),
+          "shape " + describe_order(report.expansion, report.fields, order),
+          fmt::format("expansion {}, lmax {}", report.name, report.expansion.coefficients.lmax), "mesh " + report.mesh,
+          "mesh_sha256 " + report.mesh_hash};
+}
+
 void write_screen(const ReconstructReport& report, const Sink& sink) {
-  const SurfaceExpansion& expansion = *report.expansion;
+  const SurfaceExpansion& expansion = report.expansion;
   const Vec3& o = expansion.origin;
   if (report.from_file)
     sink(fmt::format("{}: expansion {} of mesh {}, sha256 {}\n", report.input, report.name, report.mesh,
@@ -147,7 +154,7 @@ void write_screen(const ReconstructReport& report, const Sink& sink) {
 }
 
 void write_json(const ReconstructReport& report, const Sink& sink) {
-  const SurfaceExpansion& expansion = *report.expansion;
+  const SurfaceExpansion& expansion = report.expansion;
   ordered_json mesh = {{"name", report.mesh}, {"sha256", report.mesh_hash}};
   ordered_json truth;
   if (report.body) {

@@ -32,7 +32,7 @@ struct ReconstructReport {
   DeviceFacts device;
   std::string name, recipe, map_method; ///< names of the expansion, its recipe and its map's method
   std::string mesh, mesh_hash;          ///< name and SHA-256 of the mesh that was expanded
-  const SurfaceExpansion* expansion = nullptr;
+  SurfaceExpansion expansion;
   SurfaceFields fields = SurfaceFields::xyz;
   std::optional<Body> body; ///< where the mesh is known
   std::size_t samples = 0;  ///< points of each surface that distances are taken from
@@ -40,6 +40,9 @@ struct ReconstructReport {
   std::vector<std::string> notes;
   double source_seconds = 0, total_seconds = 0; ///< reading, mapping and expanding; all
 };
+
+/// What a file of the body of one order says about it, each a word and a text.
+std::vector<std::string> order_facts(const ReconstructReport& report, int order);
 
 /// For people: what was rebuilt from what, then a table by order.
 void write_screen(const ReconstructReport& report, const Sink& sink);

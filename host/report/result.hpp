@@ -1,10 +1,10 @@
 // Everything one `expand` found out, ready to be shown or written.
 #pragma once
 
-#include "host/coefficients.hpp"
 #include "host/device_facts.hpp"
 #include "host/mesh/body.hpp"
 #include "host/mesh/tensors.hpp"
+#include "host/multipoles.hpp"
 #include "host/report/surface_result.hpp"
 #include "host/run_report.hpp"
 #include "host/spectrum/verify.hpp"
@@ -33,7 +33,7 @@ struct ExpandResult {
   Body body;
   DeviceFacts device;
   double cut_off = 0;
-  Coefficients mass; ///< about body.origin
+  Multipoles mass; ///< about body.origin
   Tensors tensors;
   RunReport run;
   Timings timings;

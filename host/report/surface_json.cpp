@@ -14,7 +14,7 @@ using nlohmann::ordered_json;
 
 ordered_json map_json(const SurfaceResult& result) {
   const MapQuality& quality = result.quality;
-  ordered_json map = {{"method", result.map.method}};
+  ordered_json map = {{"method", name(result.map.method)}};
   if (!result.map_file.empty()) {
     map["file"] = result.map_file;
     map["sha256"] = result.map_sha256;

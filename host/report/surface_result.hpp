@@ -16,9 +16,9 @@
 namespace cowgpu {
 
 struct SurfaceResult {
-  std::string name;                 ///< key among the expansions: "harmonic", "stretch", "smooth" or "flow"
+  MapMethod of = MapMethod::stretch; ///< whose name is the key among the expansions; not file
   SphereMap map;                    ///< the map; of the flow: where the mesh's vertices come to, seen from the origin
-  std::string map_file, map_sha256; ///< the file that the map was read from (method "file"), or empty
+  std::string map_file, map_sha256; ///< the file that the map was read from (map.method file), or empty
   std::string recipe;               ///< "default" or "paper"
   std::string origin_kind;          ///< as in Body
   std::string length_unit = "the mesh's length unit";

@@ -123,7 +123,7 @@ void write_surface_screen(const SurfaceResult& result, const std::function<void(
   const SphereCoefficients& a = expansion.coefficients;
   const Vec3& o = expansion.origin;
   sink(fmt::format("\nsurface over the {} map{}, recipe {}, to degree {}: {} coefficients of each of six fields\n",
-                   result.name, result.map_file.empty() ? "" : " of " + result.map_file, result.recipe, a.lmax,
+                   name(result.of), result.map_file.empty() ? "" : " of " + result.map_file, result.recipe, a.lmax,
                    SphereCoefficients::count(a.lmax)));
   for (const std::string& note : result.map.notes) sink("  map: " + note + "\n");
   for (const std::string& sentence : result.quality.sentences) sink("  map: " + sentence + "\n");

@@ -19,25 +19,25 @@
 namespace cowgpu {
 namespace {
 
-SphereMap make_map(const std::string& method, bool paper, const ManifoldSurface& surface, Monitor& monitor) {
-  if (method == "stretch") return stretch_map(surface, {}, monitor);
-  if (method == "smooth") return smooth_map(surface, {}, monitor);
+SphereMap make_map(MapMethod method, bool paper, const ManifoldSurface& surface, Monitor& monitor) {
+  if (method == MapMethod::stretch) return stretch_map(surface, {}, monitor);
+  if (method == MapMethod::smooth) return smooth_map(surface, {}, monitor);
   return harmonic_map(surface, paper ? HarmonicOptions::paper_recipe() : HarmonicOptions{}, monitor);
 }
 
-SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choice, bool estimate_aliasing,
-                          const Body& body, const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
-  const bool paper = choice.paper && (method == "harmonic" || method == "flow");
+SurfaceResult expand_over(MapMethod method, const ExpansionChoice& choice, bool estimate_aliasing, const Body& body,
+                          const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
+  const bool paper = choice.paper && (method == MapMethod::harmonic || method == MapMethod::flow);
   SurfaceResult result;
   result.recipe = paper ? "paper" : "default";
   result.origin_kind = paper ? "mesh" : body.origin_kind;
-  result.name = method;
+  result.of = method;
   result.beside_paper =
       paper && choice.lmax >= 3 && body.surface.mesh().sha256 == benchmark_sha256 && body.placement.is_identity();
-  if (body.placement.metric) result.length_unit = "metres";
+  if (body.units().stated) result.length_unit = "metres";
   const Vec3 origin = paper ? Vec3::Zero() : body.origin;
   const int judged_degree = surface_grid_degree(choice.lmax) / 2;
-  if (method == "flow") {
+  if (method == MapMethod::flow) {
     expand_flow(choice, estimate_aliasing, surface, origin, backend, monitor, result);
     result.quality = judge(surface, result.map, judged_degree);
     return result;
@@ -71,11 +71,35 @@ SurfaceResult expand_over(const std::string& method, const ExpansionChoice& choi
 
 } // namespace
 
+void check_expansions(const ExpansionChoice& choice) {
+  const auto asked_for = [&](MapMethod map) {
+    return std::find(choice.maps.begin(), choice.maps.end(), map) != choice.maps.end();
+  };
+  std::vector<std::string_view> words;
+  if (choice.mass) words.emplace_back("mass");
+  for (const MapMethod map : choice.maps) words.push_back(name(map));
+  const bool flow = asked_for(MapMethod::flow);
+  if (choice.paper && !asked_for(MapMethod::harmonic) && !flow)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--recipe paper is about the harmonic map and the flow, and --of {} asks for neither; add --of "
+                    "harmonic or --of flow",
+                    fmt::join(words, ",")));
+  if (!choice.map_file.empty() && (choice.maps.size() != 1 || flow))
+    throw Error(Fault::bad_argument,
+                fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
+                            "with --of harmonic, stretch or smooth",
+                            choice.map_file, fmt::join(words, ","),
+                            choice.maps.empty()      ? "none"
+                            : choice.maps.size() > 1 ? "several"
+                                                     : "the flow, whose map is not kept in a file"));
+}
+
 MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend) {
   if (choice.maps.empty()) return {};
   MemoryNeed need = expand_surface_memory(faces, choice.lmax, backend);
   need.host += (choice.maps.size() - 1) * 6 * 16 * SphereCoefficients::count(choice.lmax);
-  if (choice.maps.back() == "flow") {
+  if (choice.maps.back() == MapMethod::flow) {
     const MemoryNeed flow = expand_flow_memory(choice.flow, choice.paper, choice.lmax, faces, backend);
     need.host += flow.host;
     need.device = std::max(need.device, flow.device);
@@ -89,7 +113,7 @@ std::vector<SurfaceResult> expand_surfaces(const ExpansionChoice& choice, bool e
   if (choice.maps.empty()) return results;
   const auto surface = ManifoldSurface::from(body.surface);
   require_sphere(surface);
-  for (const std::string& method : choice.maps)
+  for (const MapMethod method : choice.maps)
     results.push_back(expand_over(method, choice, estimate_aliasing, body, surface, backend, monitor));
   return results;
 }
@@ -97,7 +121,7 @@ std::vector<SurfaceResult> expand_surfaces(const ExpansionChoice& choice, bool e
 void check_surfaces(std::span<const SurfaceResult> results) {
   for (const SurfaceResult& result : results)
     if (result.flow && !result.flow->failure.empty())
-      throw Error(Fault::check_failed, "--of " + result.name + ": " + result.flow->failure);
+      throw Error(Fault::check_failed, fmt::format("--of {}: {}", name(result.of), result.flow->failure));
 }
 
 } // namespace cowgpu

@@ -23,12 +23,16 @@ struct FlowChoice {
 /// Which expansions are asked for.
 struct ExpansionChoice {
   bool mass = false;
-  std::vector<std::string> maps; ///< some of "harmonic", "stretch", "smooth", "flow", in this order, each once
-  bool paper = false;            ///< the harmonic map and the flow by the paper's recipe
-  std::string map_file;          ///< a PLY file instead of making the one map, or empty
+  std::vector<MapMethod> maps; ///< some of made_maps, in its order, each once
+  bool paper = false;          ///< the harmonic map and the flow by the paper's recipe
+  std::string map_file;        ///< a PLY file instead of making the one map, or empty
   int lmax = 0;
   FlowChoice flow;
 };
+
+/// Throws Error(bad_argument) for the paper's recipe without the harmonic map or the flow, and for a map file without just one
+/// map that it stands for.
+void check_expansions(const ExpansionChoice& choice);
 
 /// What the largest of the surface expansions needs, and all results; nothing where none is asked for.
 MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::uint64_t faces, const Backend& backend);

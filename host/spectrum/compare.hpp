@@ -1,7 +1,7 @@
 // How far two sets of moments are apart, degree by degree, beside what rounding explains.
 #pragma once
 
-#include "host/coefficients.hpp"
+#include "host/multipoles.hpp"
 
 #include <span>
 #include <vector>
@@ -21,9 +21,9 @@ struct DegreeErrors {
 
 /// Compares each degree with `estimate[l]`, the error to be expected of both together in the units of the coefficients
 /// (host/spectrum/error_estimate.hpp). Both sets must be of one lmax, origin and radius.
-DegreeErrors compare(const Coefficients& a, const Coefficients& b, std::span<const double> estimate);
+DegreeErrors compare(const Multipoles& a, const Multipoles& b, std::span<const double> estimate);
 
 /// The same against coefficients in extended precision, real and imaginary parts interleaved.
-DegreeErrors compare(const Coefficients& a, std::span<const long double> b, std::span<const double> estimate);
+DegreeErrors compare(const Multipoles& a, std::span<const long double> b, std::span<const double> estimate);
 
 } // namespace cowgpu

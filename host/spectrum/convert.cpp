@@ -165,12 +165,20 @@ SphereCoefficients orthonormal(const CoefficientSet& set) {
 }
 
 CoefficientSet set_of(const SphereCoefficients& coefficients, Convention convention) {
-  const RealCoefficients real = to_real(coefficients, convention);
-  CoefficientSet set(real.lmax, real.fields);
-  set.convention = convention;
-  set.first = real.cosine;
-  set.second = real.sine;
-  return set;
+  CoefficientSet complex(coefficients.lmax, coefficients.fields);
+  complex.form = Form::complex;
+  for (int f = 0; f < coefficients.fields; ++f)
+    for (int m = 0; m <= coefficients.lmax; ++m)
+      for (int l = m; l <= coefficients.lmax; ++l) {
+        const std::complex<double> a = coefficients.at(f, l, m);
+        complex.first[complex.index(f, l, m)] = a.real();
+        complex.second[complex.index(f, l, m)] = m == 0 ? 0 : a.imag();
+      }
+  ConversionTarget target;
+  target.form = Form::real;
+  target.normalisation = convention.normalisation;
+  target.phase = convention.phase;
+  return converted(complex, target);
 }
 
 CoefficientSet rotated(const CoefficientSet& set, const EulerAngles& angles, Monitor& monitor, unsigned threads) {

@@ -41,7 +41,8 @@ CoefficientSet single_field(const CoefficientSet& set, const std::string& field)
 /// Q_lm / R^l of multipoles.
 SphereCoefficients orthonormal(const CoefficientSet& set);
 
-/// The same numbers in a convention of real coefficients.
+/// Fields as real coefficients C_lm, S_lm of a convention; imaginary parts of a_l0 are ignored. There and back is right to 4
+/// units in the last place. Throws Error(bad_argument) as converted() does.
 CoefficientSet set_of(const SphereCoefficients& coefficients, Convention convention);
 
 } // namespace cowgpu

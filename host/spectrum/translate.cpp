@@ -37,11 +37,11 @@ std::vector<Real> factorials(int n) {
   return f;
 }
 
-/// Regular solid harmonics to degree lmax, orders m >= 0, in the order of Coefficients.
+/// Regular solid harmonics to degree lmax, orders m >= 0, sorted by l, then m.
 std::vector<Complex> solid_harmonics(const std::array<Real, 3>& d, int lmax) {
-  std::vector<Complex> r(Coefficients::count(lmax));
+  std::vector<Complex> r(Multipoles::count(lmax));
   const Real square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-  const auto at = [&](int l, int m) -> Complex& { return r[Coefficients::index(l, m)]; };
+  const auto at = [&](int l, int m) -> Complex& { return r[Multipoles::by_degree(l, m)]; };
   at(0, 0) = 1;
   for (int m = 0; m <= lmax; ++m) {
     if (m > 0) at(m, m) = at(m - 1, m - 1) * Complex(d[0], d[1]) * (Real(-1) / Real(2 * m));
@@ -55,7 +55,7 @@ std::vector<Complex> solid_harmonics(const std::array<Real, 3>& d, int lmax) {
 
 /// Of any order: R_l,-m = (-1)^m conj R_lm.
 Complex of_order(const std::vector<Complex>& r, int l, int m) {
-  const Complex value = r[Coefficients::index(l, std::abs(m))];
+  const Complex value = r[Multipoles::by_degree(l, std::abs(m))];
   return m >= 0 ? value : (m % 2 == 0 ? Real(1) : Real(-1)) * std::conj(value);
 }
 
@@ -91,15 +91,15 @@ std::vector<long double> translated(const MomentProblem& far, const MomentProble
            std::sqrt(factorial[std::size_t(l + m)]);
   };
   const std::vector<Complex> harmonics = solid_harmonics(shift(far, near), far.lmax);
-  std::vector<Complex> body(Coefficients::count(near.lmax));
+  std::vector<Complex> body(Multipoles::count(near.lmax));
   const Real ratio = Real(near.reference_radius) / Real(far.reference_radius);
   Real power = 1;
   for (int k = 0; k <= near.lmax; ++k, power *= ratio)
     for (int j = 0; j <= k; ++j) {
-      const std::size_t i = Coefficients::index(k, j);
-      body[i] = Complex(moments[2 * i], moments[2 * i + 1]) * (power / scale(k, j));
+      const std::size_t i = Multipoles::index(near.lmax, k, j);
+      body[Multipoles::by_degree(k, j)] = Complex(moments[2 * i], moments[2 * i + 1]) * (power / scale(k, j));
     }
-  std::vector<Real> result(2 * Coefficients::count(far.lmax));
+  std::vector<Real> result(2 * Multipoles::count(far.lmax));
   parallel_for(0, std::size_t(far.lmax) + 1, [&](std::size_t degree, unsigned) {
     const int l = int(degree);
     for (int m = 0; m <= l; ++m) {
@@ -110,7 +110,7 @@ std::vector<long double> translated(const MomentProblem& far, const MomentProble
           re += a.real() * b.real() - a.imag() * b.imag();
           im += a.real() * b.imag() + a.imag() * b.real();
         }
-      const std::size_t i = Coefficients::index(l, m);
+      const std::size_t i = Multipoles::index(far.lmax, l, m);
       result[2 * i] = re * scale(l, m);
       result[2 * i + 1] = m == 0 ? 0 : im * scale(l, m);
     }
@@ -118,19 +118,16 @@ std::vector<long double> translated(const MomentProblem& far, const MomentProble
   return result;
 }
 
-Coefficients translated(const MomentProblem& far, const MomentProblem& near, const Coefficients& moments) {
+Multipoles translated(const MomentProblem& far, const MomentProblem& near, const Multipoles& moments) {
   std::vector<Real> values;
   for (const std::complex<double>& q : moments.values) {
     values.push_back(q.real());
     values.push_back(q.imag());
   }
   const std::vector<Real> moved = translated(far, near, values);
-  Coefficients result;
-  result.lmax = far.lmax;
-  result.origin = far.origin;
-  result.reference_radius = far.reference_radius;
-  result.density = far.density;
-  for (std::size_t i = 0; i < moved.size(); i += 2) result.values.emplace_back(double(moved[i]), double(moved[i + 1]));
+  Multipoles result(far);
+  for (std::size_t i = 0; i < result.values.size(); ++i)
+    result.values[i] = {double(moved[2 * i]), double(moved[2 * i + 1])};
   return result;
 }
 

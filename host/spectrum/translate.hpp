@@ -11,8 +11,8 @@
 // sqrt(2l+1) C(l,k) (r/|d|)^k |d|^l B_0 to the norm of degree l, so that a few degrees k are enough.
 #pragma once
 
-#include "host/coefficients.hpp"
 #include "host/moment_problem.hpp"
+#include "host/multipoles.hpp"
 
 #include <optional>
 #include <span>
@@ -28,7 +28,7 @@ std::optional<MomentProblem> near_problem(const MomentProblem& far);
 /// Moments Q_lm / R^l of `far` from those of near_problem(), in extended precision, real and imaginary parts interleaved.
 std::vector<long double> translated(const MomentProblem& far, const MomentProblem& near,
                                     std::span<const long double> moments);
-Coefficients translated(const MomentProblem& far, const MomentProblem& near, const Coefficients& moments);
+Multipoles translated(const MomentProblem& far, const MomentProblem& near, const Multipoles& moments);
 
 /// What the errors of the near moments' degrees amount to in those of `far`: independent errors of the degrees k, and the terms
 /// left out, given B_0.

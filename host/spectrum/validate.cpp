@@ -24,7 +24,7 @@ Check against(const std::string& what, const DegreeErrors& errors, std::span<con
   return check;
 }
 
-Check same_bits(const std::string& what, const Coefficients& a, const Coefficients& b) {
+Check same_bits(const std::string& what, const Multipoles& a, const Multipoles& b) {
   const bool same = a.values == b.values;
   return {what, same ? 0.0 : 1.0, 0.0, -1, same};
 }
@@ -43,24 +43,22 @@ Validation validate_moments(const Body& body, int lmax, double cut_off, Backend*
 
   std::vector<std::vector<double>> norms;
   const auto on = [&](Backend& backend) { return mass_moments({&problem, 1}, backend, monitor, nullptr, &norms); };
-  const Coefficients q = on(*make_cpu_backend(threads));
+  const Multipoles q = on(*make_cpu_backend(threads));
   MomentProblem fine = computed; // a coarse cut-off is to be seen, not to be allowed for
   fine.cut_off = std::min(cut_off, default_cut_off);
   plan::DegreeSums sums = plan::degree_sums(fine);
   const RoundingTerms rounding = {moment_terms(computed, threads, monitor).root, norms.front(), sums.bound,
                                   sums.left_out, double(problem.faces.size())};
   const std::vector<double> estimate = problem_error(problem, rounding);
-  std::vector<double> norm;
-  for (int l = 0; l <= lmax; ++l) norm.push_back(degree_norm(q, l));
   // What is printed is of the moments as they were computed, with what their cut-off leaves out.
   RoundingTerms all = rounding;
   if (cut_off > default_cut_off) all.left_out = plan::degree_sums(computed).left_out;
-  result.estimate = {problem_error(problem, all), norm, near ? plan::degree_bound(problem) : sums.bound};
+  result.estimate = {problem_error(problem, all), degree_norms(q), near ? plan::degree_bound(problem) : sums.bound};
   checks.push_back(
       against("CPU path against the reference in extended precision", compare(q, reference, estimate), estimate, 1));
   checks.push_back(same_bits("CPU path on one thread: other bits than on all", on(*make_cpu_backend(1)), q));
   if (gpu) {
-    const Coefficients g = on(*gpu);
+    const Multipoles g = on(*gpu);
     checks.push_back(against("Vulkan path against the reference in extended precision", compare(g, reference, estimate),
                              estimate, 1));
     checks.push_back(same_bits("Vulkan path run twice: other bits", on(*gpu), g));

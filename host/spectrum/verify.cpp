@@ -28,12 +28,6 @@ unsigned threads_of(const Backend& backend) {
   return backend.facts().type == "cpu" ? backend.facts().threads : 0;
 }
 
-std::vector<double> degree_norms(const Coefficients& q) {
-  std::vector<double> norm;
-  for (int l = 0; l <= q.lmax; ++l) norm.push_back(degree_norm(q, l));
-  return norm;
-}
-
 void add(std::vector<double>& sum, const std::vector<double>& more) {
   sum.resize(more.size());
   for (std::size_t i = 0; i < more.size(); ++i) sum[i] += more[i];
@@ -52,63 +46,18 @@ bool Accuracy::passed() const {
   return worst() && worst()->errors.ratio <= bound;
 }
 
-std::vector<MomentProblem> mass_problems(const Body& body, int lmax, double cut_off) {
-  std::vector<MomentProblem> problems;
-  const auto add = [&](const ClosedSurface& surface, double density) {
-    MomentProblem problem;
-    problem.vertices = surface.vertices();
-    problem.faces = surface.faces();
-    problem.origin = body.origin;
-    problem.reference_radius = body.brillouin_radius;
-    problem.density = density;
-    problem.lmax = lmax;
-    problem.cut_off = cut_off;
-    problems.push_back(problem);
-  };
-  add(body.surface, body.density);
-  for (const Part& part : body.parts) add(part.surface, part.density);
-  return problems;
-}
-
-Coefficients mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor,
-                          RunReport* report, std::vector<std::vector<double>>* norms) {
-  Coefficients sum;
-  RunReport all;
-  if (norms) norms->clear();
-  for (const MomentProblem& problem : problems) {
-    RunReport run;
-    const std::optional<MomentProblem> near = near_problem(problem);
-    Coefficients q = backend.moments(near ? *near : problem, monitor, &run);
-    if (norms) norms->push_back(degree_norms(q));
-    if (near) q = translated(problem, *near, q);
-    if (&problem == problems.data())
-      sum = std::move(q);
-    else
-      for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += q.values[i];
-    all.seconds += run.seconds;
-    all.setup_seconds += run.setup_seconds;
-    all.elements += run.elements;
-    all.full_elements += run.full_elements;
-    all.pairs += run.pairs;
-    all.kernels.insert(all.kernels.end(), run.kernels.begin(), run.kernels.end());
-  }
-  if (report) *report = std::move(all);
-  return sum;
-}
-
-Agreement compare_with_tensors(const Body& body, const Coefficients& q, std::span<const double> estimate) {
-  Coefficients ours = q;
-  ours.lmax = std::min(q.lmax, 2);
-  ours.values.resize(Coefficients::count(ours.lmax));
-  Coefficients expected = ours; // degree 1 is compared with itself: the centre of mass is a rounded number
+Agreement compare_with_tensors(const Body& body, const Multipoles& q, std::span<const double> estimate) {
+  Multipoles ours(std::min(q.lmax, 2));
+  for (int l = 0; l <= ours.lmax; ++l)
+    for (int m = 0; m <= l; ++m) ours(l, m) = q(l, m);
+  Multipoles expected = ours; // degree 1 is compared with itself: the centre of mass is a rounded number
   constexpr double pi = std::numbers::pi;
-  expected.values[0] = body.mass() / std::sqrt(4 * pi);
+  expected(0, 0) = body.mass() / std::sqrt(4 * pi);
   if (ours.lmax == 2) {
     const Eigen::Matrix3d t = tensors(body).quadrupole / (q.reference_radius * q.reference_radius);
-    expected.values[Coefficients::index(2, 0)] = std::sqrt(5 / pi) / 4 * t(2, 2);
-    expected.values[Coefficients::index(2, 1)] = -std::sqrt(5 / (24 * pi)) * std::complex(t(0, 2), t(1, 2));
-    expected.values[Coefficients::index(2, 2)] =
-        std::sqrt(5 / (96 * pi)) * std::complex(t(0, 0) - t(1, 1), 2 * t(0, 1));
+    expected(2, 0) = std::sqrt(5 / pi) / 4 * t(2, 2);
+    expected(2, 1) = -std::sqrt(5 / (24 * pi)) * std::complex(t(0, 2), t(1, 2));
+    expected(2, 2) = std::sqrt(5 / (96 * pi)) * std::complex(t(0, 0) - t(1, 1), 2 * t(0, 1));
   }
   return {"degrees 0 and 2", "mass and quadrupole tensor",
           compare(ours, expected, estimate.first(std::size_t(ours.lmax) + 1))};
@@ -118,7 +67,7 @@ std::uint64_t verify_bytes(const MomentProblem& problem, Verify how) {
   if (how == Verify::none) return 0;
   MomentProblem part = problem;
   if (how == Verify::sample) part.faces = part.faces.first(std::min(part.faces.size(), sample_size));
-  return 16 * Coefficients::count(problem.lmax) + moment_terms_bytes(part);
+  return 16 * Multipoles::count(problem.lmax) + moment_terms_bytes(part);
 }
 
 std::vector<double> problem_error(const MomentProblem& problem, const RoundingTerms& rounding) {
@@ -143,7 +92,7 @@ Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify h
   }
   accuracy.triangles = part.faces.size();
   accuracy.seed = seed;
-  const Coefficients done = backend.moments(part, monitor);
+  const Multipoles done = backend.moments(part, monitor);
   const MomentTerms terms = moment_terms(part, threads_of(backend), monitor);
   plan::DegreeSums sums = plan::degree_sums(part);
   // The norms are the second recursion's: the backend's may be wrong.
@@ -164,7 +113,7 @@ Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify h
   return accuracy;
 }
 
-Accuracy verify_all(std::span<const MomentProblem> problems, const Coefficients& mass,
+Accuracy verify_all(std::span<const MomentProblem> problems, const Multipoles& mass,
                     std::span<const std::vector<double>> norms, Backend& backend, Verify how, std::uint64_t seed,
                     Monitor& monitor) {
   Accuracy all;

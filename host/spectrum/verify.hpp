@@ -5,6 +5,7 @@
 #include "host/mesh/body.hpp"
 #include "host/spectrum/compare.hpp"
 #include "host/spectrum/error_estimate.hpp"
+#include "host/spectrum/mass_moments.hpp"
 
 #include <cstdint>
 #include <span>
@@ -37,19 +38,10 @@ struct Accuracy {
   bool passed() const; ///< something was compared, and every ratio is within the bound; NaN fails
 };
 
-/// The problems of a body's mass moments: that of its surface, then those of its parts, all about the body's origin and
-/// with its Brillouin radius. They refer to the body.
-std::vector<MomentProblem> mass_problems(const Body& body, int lmax, double cut_off);
-
-/// The sum of the problems' moments, each of those far from its origin by way of near_problem() (host/spectrum/translate.hpp);
-/// `report` sums up what the backend reports, `norms` holds the norm of each degree of what it computed for each problem.
-Coefficients mass_moments(std::span<const MomentProblem> problems, Backend& backend, Monitor& monitor,
-                          RunReport* report = nullptr, std::vector<std::vector<double>>* norms = nullptr);
-
 /// Degrees 0 and 2 of `q` against the body's mass and Cartesian quadrupole tensor, which share no code with any path:
 /// Q_00 = M/sqrt(4 pi), Q_20 = sqrt(5/pi)/4 T_zz, Q_21 = -sqrt(5/24pi) (T_xz + i T_yz), Q_22 = sqrt(5/96pi) (T_xx - T_yy +
 /// 2i T_xy), T = integral of density (3 x x - r^2). `estimate` is E_l of `q`.
-Agreement compare_with_tensors(const Body& body, const Coefficients& q, std::span<const double> estimate);
+Agreement compare_with_tensors(const Body& body, const Multipoles& q, std::span<const double> estimate);
 
 /// Bound of the host bytes verify_moments() allocates beside what the backend needs for the same triangles.
 std::uint64_t verify_bytes(const MomentProblem& problem, Verify how);
@@ -66,7 +58,7 @@ Accuracy verify_moments(const MomentProblem& problem, Backend& backend, Verify h
 
 /// verify_moments() of each problem or its near_problem(), and the estimate for `mass`, the sum of their moments, of which
 /// mass_moments() gave the `norms`: triangles are counted over all, agreements are the worst of each pair of paths.
-Accuracy verify_all(std::span<const MomentProblem> problems, const Coefficients& mass,
+Accuracy verify_all(std::span<const MomentProblem> problems, const Multipoles& mass,
                     std::span<const std::vector<double>> norms, Backend& backend, Verify how, std::uint64_t seed,
                     Monitor& monitor);
 

@@ -1,6 +1,7 @@
 #include "host/convention.hpp"
 
 #include "host/error.hpp"
+#include "host/spectrum/convert.hpp"
 #include "host/spectrum/roundtrip.hpp"
 
 #include <catch2/catch.hpp>
@@ -81,14 +82,14 @@ TEST_CASE("simple fields have the coefficients each convention's definition give
       INFO(field.name << ", " << name(convention.normalisation) << ", " << name(convention.phase));
       SphereCoefficients a(2, 1);
       a.at(0, field.l, field.m) = field.a;
-      const RealCoefficients real = to_real(a, convention);
+      const CoefficientSet real = set_of(a, convention);
       const double want = expected(field, convention);
       for (int l = 0; l <= 2; ++l)
         for (int m = 0; m <= l; ++m) {
           const bool here = l == field.l && m == field.m;
           const std::size_t at = real.index(0, l, m);
-          CHECK(std::fabs(real.cosine[at] - (here && !field.sine ? want : 0)) <= 8 * ulp * std::fabs(want));
-          CHECK(std::fabs(real.sine[at] - (here && field.sine ? want : 0)) <= 8 * ulp * std::fabs(want));
+          CHECK(std::fabs(real.first[at] - (here && !field.sine ? want : 0)) <= 8 * ulp * std::fabs(want));
+          CHECK(std::fabs(real.second[at] - (here && field.sine ? want : 0)) <= 8 * ulp * std::fabs(want));
         }
     }
 }
@@ -98,7 +99,7 @@ TEST_CASE("there and back is right to 4 units in the last place", "[convention]"
     INFO(name(convention.normalisation) << ", " << name(convention.phase));
     const bool narrow = convention.normalisation == Normalisation::unnormalised;
     const SphereCoefficients a = random_coefficients(narrow ? 140 : 300, 2, 3);
-    const SphereCoefficients b = to_complex(to_real(a, convention));
+    const SphereCoefficients b = orthonormal(set_of(a, convention));
     double worst = 0;
     for (std::size_t i = 0; i < a.values.size(); ++i)
       for (const auto part :
@@ -119,10 +120,10 @@ TEST_CASE("degree 8192 fits all conventions but the unnormalised", "[convention]
     if (convention.phase == Phase::condon_shortley) continue;
     INFO(name(convention.normalisation));
     if (convention.normalisation == Normalisation::unnormalised) {
-      CHECK(refused([&] { to_real(a, convention); }));
+      CHECK(refused([&] { set_of(a, convention); }));
       continue;
     }
-    const SphereCoefficients b = to_complex(to_real(a, convention));
+    const SphereCoefficients b = orthonormal(set_of(a, convention));
     for (const int m : {0, 1, 4096, 8191, 8192})
       CHECK(std::abs(b.at(0, 8192, m) - a.at(0, 8192, m)) <= 2 * ulp * std::abs(a.at(0, 8192, m)));
   }
@@ -136,8 +137,8 @@ TEST_CASE("unnormalised coefficients are refused where a double cannot hold them
     SphereCoefficients a(l, 1);
     a.at(0, l, l) = 1;
     const bool lost = refused([&] {
-      const RealCoefficients real = to_real(a, unnormalised);
-      CHECK(std::fabs(real.cosine.back()) >= std::numeric_limits<double>::min());
+      const CoefficientSet real = set_of(a, unnormalised);
+      CHECK(std::fabs(real.first.back()) >= std::numeric_limits<double>::min());
     });
     if (lost && first < 0) first = l;
     if (first >= 0) CHECK(lost);
@@ -146,11 +147,12 @@ TEST_CASE("unnormalised coefficients are refused where a double cannot hold them
   // Zeros have a place at any degree, and so have zonal coefficients.
   SphereCoefficients zonal(2000, 1);
   zonal.at(0, 2000, 0) = 1;
-  CHECK(std::isfinite(to_real(zonal, unnormalised).cosine[SphereCoefficients::index(2000, 2000, 0)]));
+  CHECK(std::isfinite(set_of(zonal, unnormalised).first[SphereCoefficients::index(2000, 2000, 0)]));
   // The other way: harmonics that overflow.
-  RealCoefficients large(200, 1, unnormalised);
-  large.cosine.back() = 1;
-  CHECK(refused([&] { to_complex(large); }));
+  CoefficientSet large(200, 1);
+  large.convention = unnormalised;
+  large.first.back() = 1;
+  CHECK(refused([&] { orthonormal(large); }));
 }
 
 TEST_CASE("names of conventions read back, and pyshtools' are known", "[convention]") {

@@ -36,7 +36,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
      {"host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics", "host/plot"}},
     {"host/requests",
      {"host/backend", "host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics",
-      "host/report"}},
+      "host/plan", "host/report"}},
     {"host/reproduce", {"host", "host/io", "host/spectrum", "host/physics", "host/report"}},
     {"host/cli",
      {"host/backend", "host", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow", "host/physics",

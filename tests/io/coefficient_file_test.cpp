@@ -102,18 +102,19 @@ std::string text_attribute(int nc, int variable, const char* key) {
 
 TEST_CASE("the netCDF layout of coefficients is pyshtools', number by number", "[coefficient-file]") {
   const TemporaryFolder folder;
-  RealCoefficients real(2, 1, {Normalisation::four_pi, Phase::none});
-  real.cosine[real.index(0, 0, 0)] = 1;
-  real.cosine[real.index(0, 1, 0)] = 2;
-  real.cosine[real.index(0, 1, 1)] = 3;
-  real.cosine[real.index(0, 2, 0)] = 4;
-  real.cosine[real.index(0, 2, 1)] = 5;
-  real.cosine[real.index(0, 2, 2)] = 6;
-  real.sine[real.index(0, 1, 1)] = 7;
-  real.sine[real.index(0, 2, 1)] = 8;
-  real.sine[real.index(0, 2, 2)] = 9;
+  CoefficientSet real(2, 1);
+  real.convention = {Normalisation::four_pi, Phase::none};
+  real.first[real.index(0, 0, 0)] = 1;
+  real.first[real.index(0, 1, 0)] = 2;
+  real.first[real.index(0, 1, 1)] = 3;
+  real.first[real.index(0, 2, 0)] = 4;
+  real.first[real.index(0, 2, 1)] = 5;
+  real.first[real.index(0, 2, 2)] = 6;
+  real.second[real.index(0, 1, 1)] = 7;
+  real.second[real.index(0, 2, 1)] = 8;
+  real.second[real.index(0, 2, 2)] = 9;
   CoefficientFile file;
-  file.coefficients = to_complex(real);
+  file.coefficients = orthonormal(real);
   file.convention = real.convention;
   write(file, folder / "c.nc");
 
@@ -190,11 +191,11 @@ TEST_CASE("coefficients as pyshtools writes them are read in every netCDF format
       foreign.write(folder / "p.nc");
       const CoefficientFile back = read_coefficients(folder / "p.nc");
       CHECK(back.convention == Convention{Normalisation::four_pi, Phase::none});
-      const RealCoefficients real = to_real(back.coefficients, back.convention);
-      CHECK(real.cosine[real.index(0, 2, 1)] == Approx(5).epsilon(1e-15));
-      CHECK(real.sine[real.index(0, 1, 1)] == Approx(7).epsilon(1e-15));
-      CHECK(real.sine[real.index(0, 2, 1)] == Approx(8).epsilon(1e-15));
-      CHECK(real.sine[real.index(0, 2, 2)] == Approx(9).epsilon(1e-15));
+      const CoefficientSet real = set_of(back.coefficients, back.convention);
+      CHECK(real.first[real.index(0, 2, 1)] == Approx(5).epsilon(1e-15));
+      CHECK(real.second[real.index(0, 1, 1)] == Approx(7).epsilon(1e-15));
+      CHECK(real.second[real.index(0, 2, 1)] == Approx(8).epsilon(1e-15));
+      CHECK(real.second[real.index(0, 2, 2)] == Approx(9).epsilon(1e-15));
       CHECK(back.notes.size() == (errors ? 1U : 0U));
     }
 }

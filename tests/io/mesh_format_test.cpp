@@ -76,13 +76,13 @@ TEST_CASE("moments of one body through every format agree", "[formats][readers][
   Paths paths;
   paths.each([&](Backend& backend) {
     const auto moments_of = [&](const RawMesh& mesh) { return moments(backend, moment_problem(mesh, 12)); };
-    const Coefficients exact = moments_of(body);
+    const Multipoles exact = moments_of(body);
     for (const std::string& bytes :
          {off_text(body), obj_text(body), ply_text(body), ply_bytes(body, true, false), ply_bytes(body, true, true)})
       CHECK(same_bits(moments_of(parse_mesh(bytes, "x")), exact));
     check_close(moments_of(parse_mesh(stl_text(body), "x")), exact, moment_problem(body, 12), 3e-14); // other vertices
     const RawMesh rounded = rounded_to_floats(body);
-    const Coefficients single = moments_of(rounded);
+    const Multipoles single = moments_of(rounded);
     CHECK(!same_bits(single, exact));
     for (const std::string& bytes : {ply_bytes(body, false, false), ply_bytes(body, false, true), glb_bytes(body)})
       CHECK(same_bits(moments_of(parse_mesh(bytes, "x")), single));

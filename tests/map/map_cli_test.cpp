@@ -104,7 +104,7 @@ TEST_CASE("a map's PLY reads back bit for bit as what the method gives", "[map-c
   options.pole.vertex = 7;
   options.centre = true;
   const SphereMap read = read_map(harmonic, surface);
-  CHECK(read.method == "file");
+  CHECK(read.method == MapMethod::file);
   CHECK(read.positions == harmonic_map(surface, options).positions);
   Monitor silent;
   StretchOptions few;
@@ -263,7 +263,7 @@ TEST_CASE("a long map is interrupted", "[map-cli]") {
 
 TEST_CASE("infinite shear is null in the JSON of a map, and flat triangles are listed", "[map-cli]") {
   const auto surface = manifold(test::icosphere(1));
-  SphereMap map{"file", surface.vertices(), {}};
+  SphereMap map{MapMethod::file, surface.vertices(), {}};
   for (Vec3& p : map.positions) p.normalize();
   const Face& face = surface.faces()[9];
   map.positions[face[0]] = map.positions[face[1]];

@@ -20,7 +20,7 @@ ManifoldSurface manifold(RawMesh mesh) {
 
 /// Each vertex of a star-shaped surface to its direction.
 SphereMap radial(const ManifoldSurface& surface) {
-  SphereMap map{"file", surface.vertices(), {}};
+  SphereMap map{MapMethod::file, surface.vertices(), {}};
   for (Vec3& p : map.positions) p.normalize();
   return map;
 }
@@ -111,7 +111,7 @@ TEST_CASE("two neighbours at one place leave two triangles without area", "[qual
 TEST_CASE("the shear of a stretched sphere is the stretch", "[quality]") {
   // Stretched along z by 3, a sphere's triangles on the equator are sheared by 3, and none by more.
   const auto sphere = manifold(icosphere(5)), spheroid = manifold(scaled(icosphere(5), {1, 1, 3}));
-  SphereMap map{"file", sphere.vertices(), {}};
+  SphereMap map{MapMethod::file, sphere.vertices(), {}};
   const MapQuality quality = judge(spheroid, map, 8);
   CHECK(quality.shear[3] < 3 + 1e-12);
   CHECK(quality.shear[3] > 2.99);

@@ -140,7 +140,7 @@ TEST_CASE("the stretch map of the benchmark has no flips, and the energy and hei
   const ManifoldSurface surface = ManifoldSurface::from(*cow);
   const SphereMap map = mapped(surface);
   check_bijective(surface, map);
-  CHECK(map.method == "stretch");
+  CHECK(map.method == MapMethod::stretch);
   REQUIRE(map.notes.size() == 2);
   CHECK_THAT(map.notes[0], Catch::Matchers::Contains("relaxed 30 times"));
   CHECK_THAT(map.notes[1], Catch::Matchers::Contains("mean squared stretch 2.2"));

@@ -29,16 +29,16 @@ ClosedSurface moved(const std::string& name, const Vec3& by) {
   return ClosedSurface::from(std::move(raw));
 }
 
-Coefficients moments(const Body& body, int lmax) {
+Multipoles moments(const Body& body, int lmax) {
   Monitor monitor;
   return mass_moments(mass_problems(body, lmax, default_cut_off), *make_cpu_backend(1), monitor);
 }
 
 // Largest difference of a degree over its norm.
-double distance(const Coefficients& a, const Coefficients& b) {
+double distance(const Multipoles& a, const Multipoles& b) {
   double worst = 0;
   for (int l = 0; l <= a.lmax; ++l) {
-    Coefficients difference = a;
+    Multipoles difference = a;
     for (std::size_t i = 0; i < a.values.size(); ++i) difference.values[i] -= b.values[i];
     worst = std::max(worst, degree_norm(difference, l) / std::abs(a(0, 0)));
   }
@@ -85,7 +85,7 @@ TEST_CASE("a part of negative density digs a hole: a cube in a cube is the mesh 
   const auto cpu = make_cpu_backend(1);
   const auto problems = mass_problems(dug, 4, default_cut_off);
   std::vector<std::vector<double>> norms;
-  const Coefficients q = mass_moments(problems, *cpu, monitor, nullptr, &norms);
+  const Multipoles q = mass_moments(problems, *cpu, monitor, nullptr, &norms);
   const Accuracy accuracy = verify_all(problems, q, norms, *cpu, Verify::full, 1, monitor);
   CHECK(accuracy.passed());
   CHECK(compare_with_tensors(dug, q, accuracy.estimate.error).errors.ratio < 1);
@@ -100,31 +100,31 @@ TEST_CASE("parts that cancel have no centre of mass, and need an origin", "[body
   CHECK_THROWS_WITH(both({}), Contains("--origin"));
   const Body dipole = both({"mesh", Vec3::Zero()});
   CHECK_FALSE(dipole.centre_of_mass.allFinite());
-  const Coefficients q = moments(dipole, 1);
+  const Multipoles q = moments(dipole, 1);
   CHECK(std::abs(q(0, 0)) < 1e-16);
   // Q_11 = -sqrt(3 / 8 pi) (p_x + i p_y), p = -2.
   CHECK(q(1, 1).real() * q.reference_radius == Approx(2 * std::sqrt(3 / (8 * pi))).epsilon(1e-14));
 }
 
 TEST_CASE("metres: moments scale by L^(3 + l), tensors by L^5, the rest with them", "[body]") {
-  const Placement unit{0.3048, true, Eigen::Matrix3d::Identity()};
+  const Placement unit{{0.3048, 1, true}, Eigen::Matrix3d::Identity()};
   const Body feet = make_body(mesh("builtin:cow@1"), {}, 1000),
              metres = make_body(mesh("builtin:cow@1", unit), {}, 1000);
   const double l3 = std::pow(0.3048, 3), l5 = std::pow(0.3048, 5);
   CHECK(metres.mass() == Approx(feet.mass() * l3).epsilon(1e-14));
   CHECK(metres.brillouin_radius == Approx(feet.brillouin_radius * 0.3048).epsilon(1e-14));
   CHECK((tensors(metres).inertia - l5 * tensors(feet).inertia).norm() < 1e-14 * tensors(metres).inertia.norm());
-  Coefficients scaled = moments(feet, 20);
+  Multipoles scaled = moments(feet, 20);
   for (auto& q : scaled.values) q *= l3;
   CHECK(distance(moments(metres, 20), scaled) < 1e-14);
 }
 
 TEST_CASE("a body that is turned has moments that are turned by Wigner's matrices", "[body]") {
   const double a = 0.3, b = 1.1, c = -2.5;
-  const Placement turned{1, false, turn(a, b, c)};
+  const Placement turned{{}, turn(a, b, c)};
   const OriginChoice origin{"mesh", Vec3::Zero()};
-  const Coefficients q = moments(make_body(mesh("builtin:cow@1"), origin, 1), 24);
-  const Coefficients direct = moments(make_body(mesh("builtin:cow@1", turned), origin, 1), 24);
+  const Multipoles q = moments(make_body(mesh("builtin:cow@1"), origin, 1), 24);
+  const Multipoles direct = moments(make_body(mesh("builtin:cow@1", turned), origin, 1), 24);
   SphereCoefficients fields(24, 1);
   for (int l = 0; l <= 24; ++l)
     for (int m = 0; m <= l; ++m) fields.at(0, l, m) = q(l, m);
@@ -132,9 +132,9 @@ TEST_CASE("a body that is turned has moments that are turned by Wigner's matrice
   // Not conjugated, Q_lm is what conj a_lm of a density on the sphere is.
   for (auto& v : fields.values) v = std::conj(v);
   const SphereCoefficients wigner = rotate(fields, {a, b, c}, monitor);
-  Coefficients turned_q = direct;
+  Multipoles turned_q = direct;
   for (int l = 0; l <= 24; ++l)
-    for (int m = 0; m <= l; ++m) turned_q.values[Coefficients::index(l, m)] = std::conj(wigner.at(0, l, m));
+    for (int m = 0; m <= l; ++m) turned_q(l, m) = std::conj(wigner.at(0, l, m));
   CHECK(distance(direct, turned_q) < 2e-14);
 }
 

@@ -176,8 +176,8 @@ TEST_CASE("orbits and spins are judged by the sphere that holds the body, not by
 }
 
 TEST_CASE("moments over another radius are those of the same body", "[brillouin]") {
-  const Coefficients q = random_moments(9, 2, 1);
-  const Coefficients there = physics::over_radius(q, 0.3), back = physics::over_radius(there, 2);
+  const Multipoles q = random_moments(9, 2, 1);
+  const Multipoles there = physics::over_radius(q, 0.3), back = physics::over_radius(there, 2);
   CHECK(there.reference_radius == 0.3);
   for (std::size_t i = 0; i < q.values.size(); ++i) CHECK(std::abs(back.values[i] - q.values[i]) <= 4e-16);
   const std::vector<double> here = physics::degree_sizes(q, 5), same = physics::degree_sizes(there, 5);

@@ -142,12 +142,12 @@ double share_without_cancelling(const MomentProblem& problem, int l) {
 }
 
 /// Norms over m of each degree's error against the truth.
-std::vector<double> true_errors(const Coefficients& q, const std::vector<Wide>& truth) {
+std::vector<double> true_errors(const Multipoles& q, const std::vector<Wide>& truth) {
   std::vector<double> errors;
   for (int l = 0; l <= q.lmax; ++l) {
     Wide sum = 0;
     for (int m = 0; m <= l; ++m) {
-      const std::size_t i = Coefficients::index(l, m);
+      const std::size_t i = Multipoles::index(q.lmax, l, m);
       const Wide re = Wide(q.values[i].real()) - truth[2 * i], im = Wide(q.values[i].imag()) - truth[2 * i + 1];
       sum += (m == 0 ? 1 : 2) * (re * re + im * im);
     }
@@ -161,7 +161,7 @@ Body body_of(RawMesh mesh, const Vec3& origin, std::vector<Part> parts = {}) {
 }
 
 struct Checked {
-  Coefficients q;
+  Multipoles q;
   Accuracy accuracy;
 };
 
@@ -178,7 +178,7 @@ Checked expand(const Body& body, int lmax, Backend& backend, Verify how = Verify
 }
 
 std::vector<Wide> truth_of(const Body& body, int lmax) {
-  std::vector<Wide> sum(2 * Coefficients::count(lmax), Wide(0));
+  std::vector<Wide> sum(2 * Multipoles::count(lmax), Wide(0));
   for (const MomentProblem& problem : mass_problems(body, lmax, 0)) {
     const auto one = reference::moments<Wide>(problem);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += one[i];
@@ -206,14 +206,14 @@ void check_estimate(const std::string& name, const Checked& found, const std::ve
 
 class Faulty : public CpuWithAFault {
 public:
-  using Fault = std::function<void(Coefficients&)>;
+  using Fault = std::function<void(Multipoles&)>;
   explicit Faulty(Fault fault, bool loses_a_triangle = false)
       : fault_(std::move(fault)), loses_a_triangle_(loses_a_triangle) {}
 
-  Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
+  Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
     MomentProblem other = problem;
     if (loses_a_triangle_) other.faces = other.faces.first(other.faces.size() - 1);
-    Coefficients q = CpuWithAFault::moments(other, monitor, report);
+    Multipoles q = CpuWithAFault::moments(other, monitor, report);
     fault_(q);
     return q;
   }
@@ -279,13 +279,11 @@ TEST_CASE("a wrong path is caught, whatever is wrong with it", "[estimate]") {
     Monitor monitor;
     return verify_moments(mass_problems(body, 64, default_cut_off).front(), backend, how, 1, monitor).passed();
   };
-  const auto nothing = [](Coefficients&) {};
+  const auto nothing = [](Multipoles&) {};
   CHECK(passes(nothing));
   CHECK(passes(nothing, false, Verify::full));
   CHECK_FALSE(passes(nothing, true)); // one of the sample's triangles
-  const auto one = [](int l, int m, double factor) {
-    return [=](Coefficients& q) { q.values[Coefficients::index(l, m)] *= factor; };
-  };
+  const auto one = [](int l, int m, double factor) { return [=](Multipoles& q) { q(l, m) *= factor; }; };
   for (const int l : {0, 1, 2, 5, 17, 40, 63, 64})
     for (const int m : {0, l / 2, l}) {
       INFO(l << " " << m);
@@ -294,16 +292,16 @@ TEST_CASE("a wrong path is caught, whatever is wrong with it", "[estimate]") {
       CHECK_FALSE(passes(one(l, m, std::numeric_limits<double>::quiet_NaN())));
     }
   CHECK_FALSE(passes(one(30, 0, 1 + 1e-9)));
-  CHECK_FALSE(passes([](Coefficients& q) { // the last degree of a sweep
-    for (int m = 0; m <= 64; ++m) q.values[Coefficients::index(64, m)] = 0;
+  CHECK_FALSE(passes([](Multipoles& q) { // the last degree of a sweep
+    for (int m = 0; m <= 64; ++m) q(64, m) = 0;
   }));
-  CHECK_FALSE(passes([](Coefficients& q) { // the conjugate
+  CHECK_FALSE(passes([](Multipoles& q) { // the conjugate
     for (auto& value : q.values) value = std::conj(value);
   }));
-  CHECK_FALSE(passes([](Coefficients& q) { // single precision
+  CHECK_FALSE(passes([](Multipoles& q) { // single precision
     for (auto& value : q.values) value = std::complex<double>(std::complex<float>(value));
   }));
-  CHECK_FALSE(passes([](Coefficients& q) {
+  CHECK_FALSE(passes([](Multipoles& q) {
     for (auto& value : q.values) value = std::numeric_limits<double>::infinity();
   }));
 }

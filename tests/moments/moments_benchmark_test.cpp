@@ -48,7 +48,7 @@ TEST_CASE("the benchmark cow has the moments that rational arithmetic gives", "[
   Paths paths;
   const MomentProblem problem = moment_problem(cow->mesh(), 4, centre);
   paths.each([&](Backend& backend) {
-    const Coefficients q = moments(backend, problem);
+    const Multipoles q = moments(backend, problem);
     for (const Row& row : rows)
       check_at_most(std::abs(q(row.l, row.m) * std::pow(q.reference_radius, row.l) / row.value - 1.0), 8e-13,
                     fmt::format("Q_{},{}", row.l, row.m)); // 13 digits are printed
@@ -84,12 +84,12 @@ TEST_CASE("a cut-off shrinks the work on the benchmark cow and bounds its error"
   const auto bound = plan::degree_bound(problem);
   paths.each([&](Backend& backend) {
     problem.cut_off = 0;
-    const Coefficients full = moments(backend, problem);
+    const Multipoles full = moments(backend, problem);
     double before = 1;
     for (const double cut_off : {default_cut_off, 1e-10, 1e-6}) {
       problem.cut_off = cut_off;
       RunReport report;
-      const Coefficients q = moments(backend, problem, &report);
+      const Multipoles q = moments(backend, problem, &report);
       CHECK(report.elements < 0.9 * before * report.full_elements);
       before = report.elements / report.full_elements;
       double worst = 0;

@@ -33,9 +33,9 @@ void for_bodies(double at_40, double at_200, const std::function<void(const RawM
 }
 
 /// Q_lm turned into what a body scaled and turned about z has: times `factor` exp(i m angle).
-Coefficients turned(Coefficients q, double factor, double angle) {
+Multipoles turned(Multipoles q, double factor, double angle) {
   for (int l = 0; l <= q.lmax; ++l)
-    for (int m = 0; m <= l; ++m) q.values[Coefficients::index(l, m)] *= factor * std::polar(1.0, m * angle);
+    for (int m = 0; m <= l; ++m) q(l, m) *= factor * std::polar(1.0, m * angle);
   return q;
 }
 
@@ -50,8 +50,8 @@ TEST_CASE("scaling a body by s multiplies its moments by s^(l+3)", "[moments][la
       const RawMesh larger = scaled(mesh, Vec3::Constant(s));
       const MomentProblem before = moment_problem(mesh, depth.lmax), after = moment_problem(larger, depth.lmax);
       paths.each([&](Backend& backend) {
-        const Coefficients p = moments(backend, before);
-        Coefficients q = moments(backend, after);
+        const Multipoles p = moments(backend, before);
+        Multipoles q = moments(backend, after);
         // What is stored is divided by R^l already; R scales with the body.
         check_at_most(std::abs(q.reference_radius / (s * p.reference_radius) - 1), 4e-16, "radius");
         check_close(turned(q, 1 / (s * s * s), 0), p, before, depth.figure);
@@ -67,10 +67,10 @@ TEST_CASE("the reference radius changes moments by its powers only", "[moments][
     MomentProblem wide = tight;
     wide.reference_radius = 1.5 * tight.reference_radius;
     paths.each([&](Backend& backend) {
-      const Coefficients p = moments(backend, tight);
-      Coefficients q = moments(backend, wide);
+      const Multipoles p = moments(backend, tight);
+      Multipoles q = moments(backend, wide);
       for (int l = 0; l <= q.lmax; ++l)
-        for (int m = 0; m <= l; ++m) q.values[Coefficients::index(l, m)] *= std::pow(1.5, l);
+        for (int m = 0; m <= l; ++m) q(l, m) *= std::pow(1.5, l);
       check_close(q, p, tight, depth.figure);
     });
   });
@@ -110,7 +110,7 @@ TEST_CASE("any rotation keeps the norm of every degree", "[moments][laws]") {
     turned_problem.vertices = after.vertices;
     const auto bound = plan::degree_bound(problem);
     paths.each([&](Backend& backend) {
-      const Coefficients p = moments(backend, problem), q = moments(backend, turned_problem);
+      const Multipoles p = moments(backend, problem), q = moments(backend, turned_problem);
       double worst = 0;
       for (int l = 0; l <= depth.lmax; ++l)
         worst = std::max(worst, std::abs(degree_norm(p, l) - degree_norm(q, l)) /
@@ -146,8 +146,8 @@ TEST_CASE("moments of two shells add", "[moments][laws]") {
     second.vertices = two.vertices;
     second.faces = two.faces;
     paths.each([&](Backend& backend) {
-      Coefficients sum = moments(backend, first);
-      const Coefficients q = moments(backend, second);
+      Multipoles sum = moments(backend, first);
+      const Multipoles q = moments(backend, second);
       for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += q.values[i];
       check_close(moments(backend, whole), sum, whole, 1.5e-15);
     });
@@ -195,7 +195,7 @@ TEST_CASE("about the centre of mass there is no dipole, and the monopole is the 
     problem.density = 3;
     const double mass = 3 * volume(mesh.vertices, mesh.faces);
     paths.each([&](Backend& backend) {
-      const Coefficients q = moments(backend, problem);
+      const Multipoles q = moments(backend, problem);
       check_at_most(std::abs(q(0, 0) * std::sqrt(4 * std::acos(-1)) / mass - 1.0), depth.figure, "monopole");
       check_at_most(degree_norm(q, 1) / mass, 1.5e-16, "dipole");
     });
@@ -209,7 +209,7 @@ TEST_CASE("no moment exceeds the bound of its degree", "[moments][laws]") {
     const auto bound = plan::degree_bound(problem);
     REQUIRE(bound.size() == std::size_t(depth.lmax) + 1);
     paths.each([&](Backend& backend) {
-      const Coefficients q = moments(backend, problem);
+      const Multipoles q = moments(backend, problem);
       for (int l = 0; l <= depth.lmax; ++l)
         for (int m = 0; m <= l; ++m) REQUIRE(std::abs(q(l, m)) <= bound[std::size_t(l)] * (1 + 1e-12));
     });

@@ -57,14 +57,14 @@ GpuOptions shape(std::uint32_t levels, std::uint32_t workgroups, bool rows_in_bu
 
 TEST_CASE("the CPU path gives the same bits on any number of threads", "[moments][determinism]") {
   const MomentProblem problem = body_problem(120);
-  const Coefficients one = moments(*make_cpu_backend(1), problem);
+  const Multipoles one = moments(*make_cpu_backend(1), problem);
   for (const unsigned threads : {2U, 3U, 7U, 0U})
     for (int run = 0; run < 3; ++run) CHECK(same_bits(moments(*make_cpu_backend(threads), problem), one));
 }
 
 TEST_CASE("the Vulkan path gives the same bits run to run", "[moments][determinism]") {
   const MomentProblem problem = body_problem(120);
-  Coefficients first;
+  Multipoles first;
   for (int instance = 0; instance < 2; ++instance) {
     const auto gpu = gpu_backend();
     if (!gpu) return skip_without_gpu();
@@ -78,14 +78,14 @@ TEST_CASE("the Vulkan path gives the same bits in small batches", "[moments][det
   MomentProblem problem = moment_problem(mesh, 120);
   for (const double cut_off : {0.0, default_cut_off}) {
     problem.cut_off = cut_off;
-    Coefficients whole;
+    Multipoles whole;
     for (const std::uint32_t budget : {60000U, 20000U, 2000U, 300U}) {
       GpuOptions options;
       options.iteration_budget = budget;
       const auto gpu = gpu_backend(options);
       if (!gpu) return skip_without_gpu();
       RunReport report;
-      const Coefficients q = moments(*gpu, problem, &report);
+      const Multipoles q = moments(*gpu, problem, &report);
       if (budget == 60000U) whole = q;
       INFO(budget);
       CHECK(same_bits(q, whole));
@@ -109,7 +109,7 @@ TEST_CASE("a loop that the device ends early is an error, never a wrong result",
   options.iteration_budget = 1000000000;
   const auto gpu = gpu_backend(options);
   if (!gpu) return skip_without_gpu();
-  const Coefficients expected = moments(*make_cpu_backend(), problem);
+  const Multipoles expected = moments(*make_cpu_backend(), problem);
   try {
     check_close(moments(*gpu, problem), expected, problem, figure); // a device without such a limit
   } catch (const Error& error) {

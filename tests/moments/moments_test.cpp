@@ -145,7 +145,7 @@ TEST_CASE("the default cut-off is below rounding", "[moments][cut-off]") {
     paths.each([&](Backend& backend) {
       problem.cut_off = default_cut_off;
       RunReport with, without;
-      const Coefficients cut = moments(backend, problem, &with);
+      const Multipoles cut = moments(backend, problem, &with);
       problem.cut_off = 0;
       check_close(cut, moments(backend, problem, &without), problem, 1e-14);
       CHECK(with.elements <= without.elements);
@@ -161,11 +161,11 @@ TEST_CASE("a cut-off bounds the error of every moment", "[moments][cut-off]") {
     paths.each([&](Backend& backend) {
       problem.cut_off = 0;
       RunReport all;
-      const Coefficients full = moments(backend, problem, &all);
+      const Multipoles full = moments(backend, problem, &all);
       for (const double cut_off : {1e-3, 1e-6, 1e-10}) {
         problem.cut_off = cut_off;
         RunReport some;
-        const Coefficients q = moments(backend, problem, &some);
+        const Multipoles q = moments(backend, problem, &some);
         double worst = 0;
         for (int l = 0; l <= q.lmax; ++l)
           for (int m = 0; m <= l; ++m) worst = std::max(worst, std::abs(q(l, m) - full(l, m)) / bound[std::size_t(l)]);
@@ -245,7 +245,7 @@ TEST_CASE("work that is told to stop stops, and the device works on", "[moments]
   for (Backend* backend : {cpu.get(), gpu.get()}) {
     if (!backend) continue;
     INFO(backend->facts().name);
-    const Coefficients before = moments(*backend, problem);
+    const Multipoles before = moments(*backend, problem);
     const auto stops = [&](Monitor& monitor) {
       try {
         backend->moments(problem, monitor);

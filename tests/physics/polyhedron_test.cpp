@@ -2,7 +2,7 @@
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "tests/support/compare_potential.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -214,7 +214,7 @@ TEST_CASE("outside, the series of a body falls on the polyhedron as the order gr
   const auto backend = make_cpu_backend();
   Monitor silent;
   for (const Body& body : bodies) {
-    const Coefficients q = mass_moments(mass_problems(body, 80, default_cut_off), *backend, silent);
+    const Multipoles q = mass_moments(mass_problems(body, 80, default_cut_off), *backend, silent);
     for (const double far : {1.5, 3.0}) {
       std::vector<Vec3> points = points_outside(20, body.brillouin_radius * far, 1, 5), there = points;
       for (Vec3& p : there) p += body.origin;

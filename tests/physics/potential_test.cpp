@@ -52,7 +52,7 @@ Fault fault_of(const std::function<void()>& call, const char* word) {
 
 TEST_CASE("the series of point masses is their potential, with its first and second derivatives", "[potential]") {
   constexpr int lmax = 100;
-  const Coefficients q = point_moments(cluster, lmax, 0.8);
+  const Multipoles q = point_moments(cluster, lmax, 0.8);
   const std::vector<Vec3> points = {{1.5, -0.3, 0.7}, {0, 0, 1.6}, {0, 0, -1.6}, {2, 0, 0}, {-30, 50, 20}};
   Paths paths;
   paths.each([&](Backend& backend) {
@@ -74,7 +74,7 @@ TEST_CASE("the series of point masses is their potential, with its first and sec
 TEST_CASE("the reference is the closed form of point masses but for the degrees left out", "[potential]") {
   constexpr double radius = 0.8;
   for (const int lmax : {0, 1, 2, 9, 20}) {
-    const Coefficients q = point_moments(cluster, 30, radius);
+    const Multipoles q = point_moments(cluster, 30, radius);
     const reference::ExteriorPotential<long double> series(q, lmax);
     CHECK(series.lmax() == lmax);
     for (const Vec3& at : {Vec3(3, -2, 4), Vec3(0, 0, 5), Vec3(7, 0, 0)}) {
@@ -93,12 +93,9 @@ TEST_CASE("the series of a rod is its logarithm, on the axis and beside it", "[p
   // Of length 2 h: Q_l0 = sqrt((2l+1)/4pi) M h^l/(l+1) for even l.
   constexpr double h = 0.5, mass = 3;
   constexpr int lmax = 60;
-  Coefficients q;
-  q.lmax = lmax;
+  Multipoles q(lmax);
   q.reference_radius = h;
-  q.values.resize(Coefficients::count(lmax));
-  for (int l = 0; l <= lmax; l += 2)
-    q.values[Coefficients::index(l, 0)] = std::sqrt((2 * l + 1) / (4 * std::numbers::pi)) * mass / (l + 1);
+  for (int l = 0; l <= lmax; l += 2) q(l, 0) = std::sqrt((2 * l + 1) / (4 * std::numbers::pi)) * mass / (l + 1);
   const std::vector<Vec3> points = {{0, 0, 1}, {0, 0, -1.5}, {0.8, 0.6, 0}, {1, -2, 0.5}};
   Paths paths;
   paths.each([&](Backend& backend) {
@@ -121,7 +118,7 @@ TEST_CASE("both paths sum what the reference sums, at any number of points and t
   const std::vector<std::pair<int, double>> figures = {{0, 1e-14},  {1, 1e-14},  {2, 1e-14},
                                                        {20, 1e-13}, {80, 8e-13}, {512, 2.6e-11}};
   for (const auto& [lmax, figure] : figures) {
-    const Coefficients q = random_moments(lmax, 1.3, unsigned(lmax));
+    const Multipoles q = random_moments(lmax, 1.3, unsigned(lmax));
     for (const std::size_t count : {0, 1, 7, 13, 1025}) {
       if (lmax == 512 && count == 7) continue;
       const std::vector<Vec3> points = points_outside(count, 1.3, 5, unsigned(count));
@@ -131,7 +128,7 @@ TEST_CASE("both paths sum what the reference sums, at any number of points and t
 }
 
 TEST_CASE("value and gradient alone are the same sums", "[potential]") {
-  const Coefficients q = random_moments(31, 2, 1);
+  const Multipoles q = random_moments(31, 2, 1);
   const std::vector<Vec3> points = points_outside(77, 2, 3, 1);
   Paths paths;
   for (const Derivatives derivatives : {Derivatives::none, Derivatives::first})
@@ -140,7 +137,7 @@ TEST_CASE("value and gradient alone are the same sums", "[potential]") {
 
 TEST_CASE("next to the axis no order that counts is lost up to the largest degree", "[potential]") {
   constexpr int lmax = largest_potential_degree;
-  const Coefficients q = random_moments(lmax, 1, 3);
+  const Multipoles q = random_moments(lmax, 1, 3);
   std::vector<Vec3> points = {{0, 0, 1}};
   for (const double sine : {1e-3, 0.1, 0.3, 0.36788, 0.45, 0.9})
     points.emplace_back(0.6 * sine, -0.8 * sine, std::sqrt(1 - sine * sine));
@@ -149,7 +146,7 @@ TEST_CASE("next to the axis no order that counts is lost up to the largest degre
 }
 
 TEST_CASE("degrees left out far away change nothing that rounding does not", "[potential]") {
-  const Coefficients q = random_moments(100, 1, 5);
+  const Multipoles q = random_moments(100, 1, 5);
   const std::vector<Vec3> points = points_outside(300, 1, 1e6, 2);
   Paths paths;
   paths.each([&](Backend& backend) {
@@ -168,7 +165,7 @@ TEST_CASE("degrees left out far away change nothing that rounding does not", "[p
 
 TEST_CASE("the second derivatives of a potential have no trace, and the potential of a ball is that of its mass",
           "[potential]") {
-  Coefficients ball;
+  Multipoles ball;
   ball.reference_radius = 2;
   ball.values = {7 / std::sqrt(4 * std::numbers::pi)};
   const std::vector<Vec3> points = points_outside(40, 2, 100, 7);
@@ -192,11 +189,11 @@ TEST_CASE("the second derivatives of a potential have no trace, and the potentia
 TEST_CASE("units of length only scale a potential, however large or small they are", "[potential]") {
   Paths paths;
   const std::vector<Vec3> points = points_outside(9, 1, 4, 3);
-  const Coefficients q = random_moments(6, 1, 4);
+  const Multipoles q = random_moments(6, 1, 4);
   paths.each([&](Backend& backend) {
     const PotentialField here = potential(backend, {q, points, 6});
     for (const double unit : {0x1p-200, 0x1p200}) {
-      Coefficients scaled = q;
+      Multipoles scaled = q;
       scaled.reference_radius = unit;
       std::vector<Vec3> there = points;
       for (Vec3& p : there) p *= unit;
@@ -210,14 +207,14 @@ TEST_CASE("units of length only scale a potential, however large or small they a
 }
 
 TEST_CASE("points inside, points that are none and degrees out of range are refused", "[potential]") {
-  const Coefficients q = random_moments(4, 2, 1);
-  Coefficients broken = q, flat = q;
+  const Multipoles q = random_moments(4, 2, 1);
+  Multipoles broken = q, flat = q;
   broken.values[7] = std::numeric_limits<double>::quiet_NaN();
   flat.reference_radius = 0;
   constexpr double inf = std::numeric_limits<double>::infinity();
   Paths paths;
   paths.each([&](Backend& backend) {
-    const auto fault = [&](const Coefficients& moments, const Vec3& at, int lmax, const char* word) {
+    const auto fault = [&](const Multipoles& moments, const Vec3& at, int lmax, const char* word) {
       const std::vector<Vec3> points = {Vec3(3, 0, 0), at};
       return fault_of([&] { potential(backend, {moments, points, lmax}); }, word);
     };
@@ -244,7 +241,7 @@ TEST_CASE("a potential stops when asked to, and says how far it is", "[potential
     }
     double last = 0;
   };
-  const Coefficients q = random_moments(30, 1, 1);
+  const Multipoles q = random_moments(30, 1, 1);
   const std::vector<Vec3> points = points_outside(1000, 1, 2, 1);
   Paths paths;
   paths.each([&](Backend& backend) {
@@ -256,7 +253,7 @@ TEST_CASE("a potential stops when asked to, and says how far it is", "[potential
 }
 
 TEST_CASE("the same potential on the same device has the same bits", "[potential]") {
-  const Coefficients q = random_moments(60, 1, 1);
+  const Multipoles q = random_moments(60, 1, 1);
   const std::vector<Vec3> points = points_outside(500, 1, 9, 1);
   Paths paths;
   paths.each([&](Backend& backend) {
@@ -271,7 +268,7 @@ TEST_CASE("a small budget of loop iterations takes more dispatches to the same b
   GpuOptions options;
   options.iteration_budget = 150;
   const auto small = gpu_backend(options);
-  const Coefficients q = random_moments(100, 1, 1);
+  const Multipoles q = random_moments(100, 1, 1);
   const std::vector<Vec3> points = points_outside(333, 1, 9, 1);
   RunReport few, many;
   CHECK(same_bits(potential(*usual, {q, points, 100}, &few), potential(*small, {q, points, 100}, &many)));
@@ -287,7 +284,7 @@ TEST_CASE("a small budget of loop iterations takes more dispatches to the same b
 TEST_CASE("several batches of points on Vulkan are as good as one", "[potential][vulkan]") {
   const auto gpu = gpu_backend();
   if (!gpu) return skip_without_gpu();
-  const Coefficients q = random_moments(5, 1, 1);
+  const Multipoles q = random_moments(5, 1, 1);
   const std::vector<Vec3> points = points_outside(9000, 1, 2, 1);
   const PotentialField field = potential(*gpu, {q, points, 5}), truth = potential(*make_cpu_backend(), {q, points, 5});
   double worst = 0;
@@ -300,7 +297,7 @@ TEST_CASE("several batches of points on Vulkan are as good as one", "[potential]
 TEST_CASE("a potential that the device cuts short is an error, not an answer", "[potential][vulkan]") {
   if (!gpu_backend()) return skip_without_gpu();
   engine::Gpu gpu("auto", true);
-  const Coefficients q = random_moments(400, 1, 1);
+  const Multipoles q = random_moments(400, 1, 1);
   const std::vector<Vec3> points(64, Vec3(0, 0, 1));
   const PotentialProblem problem{q, points, 400, Derivatives::none};
   const plan::PotentialSeries series = plan::potential_series(problem);

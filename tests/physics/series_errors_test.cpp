@@ -3,7 +3,7 @@
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/physics/potential_terms.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "tests/support/compare_potential.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -48,7 +48,7 @@ std::vector<Vec3> dense_directions(const Body& body, std::size_t spiral, std::si
 std::array<double, 2> scan(const Body& body, const std::vector<Vec3>& to, double d, int order) {
   const auto backend = make_cpu_backend();
   Monitor silent;
-  const Coefficients q = mass_moments(mass_problems(body, order, default_cut_off), *backend, silent);
+  const Multipoles q = mass_moments(mass_problems(body, order, default_cut_off), *backend, silent);
   std::vector<Vec3> points, places;
   for (const Vec3& n : to) {
     points.push_back(n * (d * (1 + 1e-15) * body.brillouin_radius));
@@ -116,7 +116,7 @@ TEST_CASE("no direction of the benchmark cow has a larger error than is printed"
 
 TEST_CASE("the terms of the degrees add up to the series, at places and over spheres", "[potential][errors]") {
   constexpr int lmax = 20;
-  const Coefficients q = random_moments(lmax, 1.5, 3);
+  const Multipoles q = random_moments(lmax, 1.5, 3);
   const physics::PotentialTerms terms(q);
   std::vector<Vec3> points = points_outside(7, 1.5, 2, 1);
   const auto backend = make_cpu_backend();

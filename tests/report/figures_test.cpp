@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -81,9 +82,8 @@ TEST_CASE("spectra of nothing are refused, and there is a panel for each kind", 
   } catch (const Error& error) {
     CHECK(error.fault() == Fault::bad_argument);
   }
-  Coefficients mass;
-  mass.lmax = 4;
-  mass.values.assign(Coefficients::count(4), 0.25);
+  Multipoles mass(4);
+  std::fill(mass.values.begin(), mass.values.end(), 0.25);
   const plot::Canvas one = spectra_figure(plot::PictureFormat::png, {}, &mass);
   SurfaceExpansion expansion;
   expansion.coefficients = SphereCoefficients(4, 6);

@@ -3,8 +3,8 @@
 #include "host/backend.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/spectrum/difference.hpp"
+#include "host/spectrum/mass_moments.hpp"
 #include "host/spectrum/roundtrip.hpp"
-#include "host/spectrum/verify.hpp"
 #include "tests/support/fields.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -189,7 +189,7 @@ TEST_CASE("multipoles turned are those of the turned body, of every kind and for
     const Body body = make_body(ClosedSurface::from(std::move(raw)), {}, 1);
     return make_cpu_backend()->moments(mass_problems(body, 20, default_cut_off).front(), silent);
   };
-  const auto as_set = [](const Coefficients& q) {
+  const auto as_set = [](const Multipoles& q) {
     CoefficientSet set(q.lmax, 1);
     set.kind = CoefficientKind::multipoles;
     set.form = Form::complex;

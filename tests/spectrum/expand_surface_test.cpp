@@ -193,7 +193,7 @@ TEST_CASE("both paths expand a surface alike", "[expand_surface]") {
   Paths paths;
   for (const SphereMap& map : {harmonic_map(surface), stretch_map(surface, {}, monitor)})
     for (const int lmax : {0, 1, 7, 13, 512}) {
-      INFO(map.method << ", lmax " << lmax);
+      INFO(name(map.method) << ", lmax " << lmax);
       ExpandSurfaceOptions options;
       options.lmax = lmax;
       options.origin = {0.1, 0.3, 0};

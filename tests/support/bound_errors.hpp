@@ -1,7 +1,7 @@
 // Two sets of moments against each other, by the degree's norm or its a-priori bound.
 #pragma once
 
-#include "host/coefficients.hpp"
+#include "host/multipoles.hpp"
 
 #include <cmath>
 #include <complex>
@@ -20,12 +20,12 @@ struct BoundErrors {
 /// For each degree sqrt(sum_m |a - b|^2) over the norm of degree l of b; where that norm is below 1e-3 of `bound[l]`, and for
 /// the dipole always, over bound[l] (plan::degree_bound()). b(i) is the i-th coefficient in extended precision.
 template <class Value>
-BoundErrors compare_by_bound(const Coefficients& a, const Value& b, std::span<const double> bound) {
+BoundErrors compare_by_bound(const Multipoles& a, const Value& b, std::span<const double> bound) {
   BoundErrors errors;
   for (int l = 0; l <= a.lmax; ++l) {
     long double difference = 0, square = 0;
     for (int m = 0; m <= l; ++m) {
-      const std::size_t i = Coefficients::index(l, m);
+      const std::size_t i = Multipoles::index(a.lmax, l, m);
       const std::complex<long double> value = b(i), apart = std::complex<long double>(a.values[i]) - value;
       const long double weight = m == 0 ? 1 : 2;
       difference += weight * std::norm(apart);
@@ -45,18 +45,18 @@ BoundErrors compare_by_bound(const Coefficients& a, const Value& b, std::span<co
   return errors;
 }
 
-inline BoundErrors compare_by_bound(const Coefficients& a, const Coefficients& b, std::span<const double> bound) {
+inline BoundErrors compare_by_bound(const Multipoles& a, const Multipoles& b, std::span<const double> bound) {
   return compare_by_bound(
       a, [&](std::size_t i) { return std::complex<long double>(b.values[i]); }, bound);
 }
 
 /// Real and imaginary parts of b interleaved.
-inline BoundErrors compare_by_bound(const Coefficients& a, std::span<const long double> b,
+inline BoundErrors compare_by_bound(const Multipoles& a, std::span<const long double> b,
                                     std::span<const double> bound) {
   return compare_by_bound(
       a, [&](std::size_t i) { return std::complex(b[2 * i], b[2 * i + 1]); }, bound);
 }
-inline BoundErrors compare_by_bound(const Coefficients& a, const std::vector<long double>& b,
+inline BoundErrors compare_by_bound(const Multipoles& a, const std::vector<long double>& b,
                                     std::span<const double> bound) {
   return compare_by_bound(a, std::span<const long double>(b), bound);
 }

@@ -73,15 +73,15 @@ void Paths::compare(const MomentProblem& problem, double figure, double toleranc
   each([&](Backend& backend) { compare_path(backend, problem, reference, figure); });
 }
 
-Coefficients moments(Backend& backend, const MomentProblem& problem, RunReport* report) {
+Multipoles moments(Backend& backend, const MomentProblem& problem, RunReport* report) {
   Monitor silent;
   return backend.moments(problem, silent, report);
 }
 
 void compare_path(Backend& backend, const MomentProblem& problem, std::span<const long double> reference,
                   double figure) {
-  const Coefficients result = moments(backend, problem);
-  REQUIRE(result.values.size() == Coefficients::count(problem.lmax));
+  const Multipoles result = moments(backend, problem);
+  REQUIRE(result.values.size() == Multipoles::count(problem.lmax));
   REQUIRE(result.lmax == problem.lmax);
   CHECK(result.origin == problem.origin);
   CHECK(result.reference_radius == problem.reference_radius);
@@ -92,7 +92,7 @@ void compare_path(Backend& backend, const MomentProblem& problem, std::span<cons
                             problem.lmax, errors.worst_degree));
 }
 
-void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure) {
+void check_close(const Multipoles& a, const Multipoles& b, const MomentProblem& problem, double figure) {
   const BoundErrors errors = compare_by_bound(a, b, plan::degree_bound(problem));
   check_at_most(errors.worst, figure, fmt::format("lmax {}, degree {}", problem.lmax, errors.worst_degree));
 }
@@ -102,7 +102,7 @@ void check_at_most(double error, double figure, const std::string& what) {
   CHECK(error <= figure);
 }
 
-bool same_bits(const Coefficients& a, const Coefficients& b) {
+bool same_bits(const Multipoles& a, const Multipoles& b) {
   return a.values.size() == b.values.size() &&
          std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(a.values[0])) == 0;
 }

@@ -43,19 +43,19 @@ private:
 };
 
 /// Moments without anybody watching.
-Coefficients moments(Backend& backend, const MomentProblem& problem, RunReport* report = nullptr);
+Multipoles moments(Backend& backend, const MomentProblem& problem, RunReport* report = nullptr);
 
 /// What Paths::compare does, for one path and a reference at hand.
 void compare_path(Backend& backend, const MomentProblem& problem, std::span<const long double> reference,
                   double figure);
 
 /// `a` and `b` are at most `figure` apart, as compare_by_bound() counts it with the bound of `problem`.
-void check_close(const Coefficients& a, const Coefficients& b, const MomentProblem& problem, double figure);
+void check_close(const Multipoles& a, const Multipoles& b, const MomentProblem& problem, double figure);
 
 /// error <= figure, with the number in words: Catch prints what is below 1e-5 as 0.
 void check_at_most(double error, double figure, const std::string& what);
 
 /// The same bits, -0 and 0 told apart.
-bool same_bits(const Coefficients& a, const Coefficients& b);
+bool same_bits(const Multipoles& a, const Multipoles& b);
 
 } // namespace cowgpu::test

@@ -21,11 +21,9 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
 
 } // namespace
 
-Coefficients point_moments(const std::vector<PointMass>& masses, int lmax, double radius) {
-  Coefficients q;
-  q.lmax = lmax;
+Multipoles point_moments(const std::vector<PointMass>& masses, int lmax, double radius) {
+  Multipoles q(lmax);
   q.reference_radius = radius;
-  q.values.resize(Coefficients::count(lmax));
   for (int l = 0; l <= lmax; ++l)
     for (int m = 0; m <= l; ++m) {
       std::complex<long double> sum = 0;
@@ -36,21 +34,20 @@ Coefficients point_moments(const std::vector<PointMass>& masses, int lmax, doubl
                std::polar(std::sph_legendrel(unsigned(l), unsigned(m), theta),
                           m * std::atan2((long double)(p.at.y()), (long double)(p.at.x())));
       }
-      q.values[Coefficients::index(l, m)] = std::complex<double>(sum);
+      q(l, m) = std::complex<double>(sum);
     }
   return q;
 }
 
-Coefficients random_moments(int lmax, double radius, unsigned seed) {
-  Coefficients q;
-  q.lmax = lmax;
+Multipoles random_moments(int lmax, double radius, unsigned seed) {
+  Multipoles q(lmax);
   q.reference_radius = radius;
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int l = 0; l <= lmax; ++l)
     for (int m = 0; m <= l; ++m) {
       const double re = uniform(random), im = uniform(random);
-      q.values.emplace_back(re, m == 0 ? 0 : im);
+      q(l, m) = {re, m == 0 ? 0 : im};
     }
   return q;
 }

@@ -16,10 +16,10 @@ struct PointMass {
 };
 
 /// Moments of point masses about the origin, by the special functions of the standard library.
-Coefficients point_moments(const std::vector<PointMass>& masses, int lmax, double radius);
+Multipoles point_moments(const std::vector<PointMass>& masses, int lmax, double radius);
 
 /// Moments of no body in particular: every part of every Q_lm / R^l between -1 and 1.
-Coefficients random_moments(int lmax, double radius, unsigned seed);
+Multipoles random_moments(int lmax, double radius, unsigned seed);
 
 /// Points from R to `farthest` R, some of them on the axis, on the equator and at R itself.
 std::vector<Vec3> points_outside(std::size_t count, double radius, double farthest, unsigned seed);

@@ -12,7 +12,7 @@ namespace cowgpu::test {
 class CpuWithAFault : public Backend {
 public:
   const DeviceFacts& facts() const override { return cpu_->facts(); }
-  Coefficients moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
+  Multipoles moments(const MomentProblem& problem, Monitor& monitor, RunReport* report) override {
     return cpu_->moments(problem, monitor, report);
   }
   MemoryNeed moments_memory(const MomentProblem& problem) const override { return cpu_->moments_memory(problem); }

@@ -1,5 +1,6 @@
 #include "host/io/coefficient_file.hpp"
 #include "host/io/grid_file.hpp"
+#include "host/spectrum/convert.hpp"
 #include "host/spectrum/roundtrip.hpp"
 #include "tests/support/fields.hpp"
 #include "tests/support/run_program.hpp"
@@ -84,11 +85,11 @@ TEST_CASE("a field in closed form has its coefficients", "[transform-cli]") {
   const std::string text = read_text(folder / "c.csv");
   CHECK_THAT(text, Contains("# normalisation unnormalised\n# phase none\n# fields dipole\nl,m,C,S\n"));
   const CoefficientFile c = read_coefficients(folder / "c.csv");
-  const RealCoefficients real = to_real(c.coefficients, c.convention);
-  CHECK(real.cosine[real.index(0, 0, 0)] == Approx(2).epsilon(1e-14));
-  CHECK(real.sine[real.index(0, 1, 1)] == Approx(1).epsilon(1e-14));
-  CHECK(std::fabs(real.cosine[real.index(0, 1, 0)]) < 1e-14);
-  CHECK(std::fabs(real.cosine[real.index(0, 1, 1)]) < 1e-14);
+  const CoefficientSet real = set_of(c.coefficients, c.convention);
+  CHECK(real.first[real.index(0, 0, 0)] == Approx(2).epsilon(1e-14));
+  CHECK(real.second[real.index(0, 1, 1)] == Approx(1).epsilon(1e-14));
+  CHECK(std::fabs(real.first[real.index(0, 1, 0)]) < 1e-14);
+  CHECK(std::fabs(real.first[real.index(0, 1, 1)]) < 1e-14);
 }
 
 TEST_CASE("a lower degree leaves coefficients out and a higher one makes a finer grid", "[transform-cli]") {

@@ -1,0 +1,59 @@
+#include "host/requests/roundtrip.hpp"
+
+#include "host/clock.hpp"
+#include "host/requests/memory.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace cowgpu {
+namespace {
+
+TransformReport median(std::vector<TransformReport> reports) {
+  const auto middle = reports.begin() + std::ptrdiff_t(reports.size() / 2);
+  std::nth_element(reports.begin(), middle, reports.end(),
+                   [](const TransformReport& a, const TransformReport& b) { return a.seconds < b.seconds; });
+  return *middle;
+}
+
+} // namespace
+
+RoundtripResult plan_roundtrip(const RoundtripRequest& request, const Backend& backend) {
+  const auto start = Clock::now();
+  RoundtripResult result;
+  result.device = backend.facts();
+  result.grid = make_grid(request.grid, request.lmax);
+  result.setup_seconds = seconds_since(start);
+  result.memory = backend.sphere_transform_memory(result.grid, request.lmax, request.fields);
+  result.memory.host +=
+      std::uint64_t(request.fields) * (8 * result.grid.points() + 32 * SphereCoefficients::count(request.lmax));
+  check_memory(result.memory, backend, "lower --lmax or --fields");
+  return result;
+}
+
+RoundtripResult roundtrip(const RoundtripRequest& request, Backend& backend, Monitor& monitor) {
+  RoundtripResult result = plan_roundtrip(request, backend);
+  const auto start = Clock::now();
+  const auto transform = backend.sphere_transform(result.grid, request.lmax);
+  result.setup_seconds += seconds_since(start);
+  const SphereCoefficients before = random_coefficients(request.lmax, request.fields, request.seed);
+  SphereCoefficients after(request.lmax, request.fields);
+  std::vector<double> values(std::size_t(request.fields) * result.grid.points());
+  std::vector<TransformReport> syntheses, analyses;
+  for (int i = 0; i <= request.runs; ++i) { // the first one warms up
+    TransformReport synthesis, analysis;
+    transform->synthesise(request.fields, before.values, values, monitor, &synthesis);
+    transform->analyse(request.fields, values, after.values, monitor, &analysis);
+    if (i == 0) continue;
+    syntheses.push_back(std::move(synthesis));
+    analyses.push_back(std::move(analysis));
+  }
+  result.synthesis = median(std::move(syntheses));
+  result.analysis = median(std::move(analyses));
+  result.error = compare(before, after);
+  result.bound = round_trip_bound(request.lmax);
+  return result;
+}
+
+} // namespace cowgpu

@@ -1,0 +1,47 @@
+#include "host/requests/spectrum.hpp"
+
+#include "host/error.hpp"
+#include "host/io/coefficient_file.hpp"
+#include "host/io/shown.hpp"
+#include "host/spectrum/power.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace cowgpu {
+
+double PowerSpectrum::total() const {
+  double sum = 0;
+  for (const double s : power) sum += s;
+  return sum;
+}
+
+SpectrumResult spectrum(const SpectrumRequest& request) {
+  CoefficientFile file = read_coefficients(request.input, request.metres);
+  const SphereCoefficients& a = file.coefficients;
+  const std::string input = request.input.string();
+  if (request.cross && a.fields != 2)
+    throw Error(Fault::bad_argument, fmt::format("--cross takes a file of two fields; {} has {}", input, a.fields));
+  SpectrumResult result;
+  result.lmax = a.lmax;
+  for (int f = 0; f < a.fields; ++f) {
+    const std::string& name = file.names[std::size_t(f)];
+    result.fields.push_back({!name.empty()   ? name
+                             : a.fields == 1 ? "field"
+                                             : fmt::format("field_{}", f + 1),
+                             power(a, f)});
+  }
+  for (const PowerSpectrum& field : result.fields)
+    if (!std::isfinite(field.total()))
+      throw Error(Fault::file_format,
+                  fmt::format("{}: the squares of the coefficients of {} overflow double precision; "
+                              "scale the field down",
+                              input, shown(field.name)));
+  if (request.cross) result.cross = {result.fields[0].name + " and " + result.fields[1].name, cross_power(a, 0, a, 1)};
+  result.notes = std::move(file.notes);
+  return result;
+}
+
+} // namespace cowgpu
