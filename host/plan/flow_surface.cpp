@@ -1,9 +1,9 @@
 #include "host/plan/flow_surface.hpp"
 
 #include "host/error.hpp"
+#include "host/geometry/morton.hpp"
 #include "host/plan/closest_kernel.hpp"
 #include "host/plan/closest_query.hpp"
-#include "host/plan/morton.hpp"
 #include "host/reference/flow.hpp"
 
 #include <Eigen/Geometry>

@@ -1,8 +1,8 @@
 #include "host/error.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/map/stretch.hpp"
 #include "host/map/stretch_repeats.hpp"
 #include "host/mesh/subdivide.hpp"
-#include "host/orientation.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>
