@@ -19,7 +19,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host", {}},
     {"host/backend", {"host"}},
     {"host/geometry", {"host"}},
-    {"host/plan", {"host", "host/geometry", "host/reference"}},
+    {"host/plan", {"host", "host/geometry"}},
     {"host/reference", {"host", "host/geometry"}},
     {"host/cpu", {"host/backend", "host", "host/geometry", "host/plan", "host/reference"}},
     {"host/gpu", {"host/backend", "host", "host/plan", "engine", "engine/kernels"}},
