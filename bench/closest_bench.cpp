@@ -5,11 +5,11 @@
 #include "host/backend.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/geometry/morton.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/parallel.hpp"
 #include "host/plan/closest_query.hpp"
-#include "host/plan/morton.hpp"
 #include "host/reference/closest.hpp"
 #include "tests/support/cgal_distance.hpp"
 
@@ -215,7 +215,7 @@ private:
   void compare(const std::string& key, const std::string& title, const std::vector<Vec3>& queries) {
     say("\n{}\n", title);
     verify(queries);
-    const auto order = plan::morton_order(queries, tree_->low, tree_->high, threads_);
+    const auto order = morton_order(queries, tree_->low, tree_->high, threads_);
     std::vector<Vec3> sorted(queries.size());
     for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = queries[order[i]];
     std::vector<Way> all = ways();

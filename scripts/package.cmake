@@ -38,12 +38,12 @@ install(FILES ${PROJECT_BINARY_DIR}/page/report.html DESTINATION ${CMAKE_INSTALL
 install(TARGETS libcowgpu EXPORT cowgpu-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 # Headers of what a caller uses; those of single paths and of third libraries stay inside.
-foreach(folder "" mesh/ map/ spectrum/ flow/ io/ physics/)
+foreach(folder "" geometry/ mesh/ map/ spectrum/ flow/ io/ physics/)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${folder}*.hpp)
   list(FILTER headers EXCLUDE REGEX "/(far_field|flush_denormals|netcdf|quarter_turn|result_json|tinygltf|version)\\.hpp$")
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/${folder} COMPONENT development)
 endforeach()
-install(FILES ${PROJECT_SOURCE_DIR}/host/plan/bvh.hpp ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # held by classes of theirs
+install(FILES ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # held by a class of theirs
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/plan COMPONENT development)
 install(EXPORT cowgpu-targets NAMESPACE cowgpu:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/cowgpu COMPONENT development)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/cowgpu-config.cmake CONTENT [[

@@ -1,4 +1,4 @@
-// The first triangle along a ray, one ray an invocation: Bvh::first_hit of host/plan/bvh.cpp step by step and operation by
+// The first triangle along a ray, one ray an invocation: Bvh::first_hit of geometry/bvh.cpp step by step and operation by
 // operation, so that hits are the CPU path's bit by bit where the device divides as IEEE 754 says.
 //
 // Software devices end loops early without a word. Every loop therefore leaves a trace of having run to its end, and a

@@ -3,7 +3,7 @@
 #define COWGPU_SHADERS_RENDER_H
 #include "shaders/layout.h"
 
-#define RENDER_NODES 0     // texels of four words, RENDER_NODE_TEXELS a node (host/plan/bvh.hpp): low corner, high corner,
+#define RENDER_NODES 0     // texels of four words, RENDER_NODE_TEXELS a node (geometry/bvh.hpp): low corner, high corner,
                            // first, count
 #define RENDER_TRIANGLES 1 // texels, RENDER_TRIANGLE_TEXELS a triangle in the order of the leaves: corner a, b - a, c - a as
                            // doubles, face

@@ -1,8 +1,8 @@
 #include "host/moment_terms.hpp"
 
 #include "host/cpu/moment_terms_kernel.hpp"
-#include "host/determinant.hpp"
 #include "host/flush_denormals.hpp"
+#include "host/geometry/determinant.hpp"
 #include "host/parallel.hpp"
 #include "host/reference/moments.hpp"
 

@@ -20,7 +20,7 @@ Image render(const RenderScene& scene, unsigned threads, Monitor& monitor) {
     parallel_for(threads, tiles, [&](std::size_t task, unsigned thread) {
       check_stop(monitor);
       plan::RenderTile tile = plan::render_tiles(panel, scene, task, 1)[0];
-      for (std::vector<plan::RayHit> hits; !tile.rays().empty();) {
+      for (std::vector<RayHit> hits; !tile.rays().empty();) {
         hits.resize(tile.rays().size());
         for (std::size_t i = 0; i < hits.size(); ++i)
           if (!panel.tree().first_hit(tile.rays()[i], hits[i])) hits[i].face = plan::no_face_hit;

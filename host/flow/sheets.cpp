@@ -1,7 +1,7 @@
 #include "host/flow/sheets.hpp"
 
 #include "host/error.hpp"
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/parallel.hpp"
 #include "host/spectrum/surface_fields.hpp"
 #include "host/sphere_directions.hpp"

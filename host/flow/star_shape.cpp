@@ -1,9 +1,9 @@
 #include "host/flow/star_shape.hpp"
 
 #include "host/error.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
-#include "host/orientation.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -13,10 +13,9 @@ namespace {
 
 constexpr std::size_t tiles_at_once = 8;
 
-static_assert(sizeof(plan::Bvh::Node) == 64 && offsetof(plan::Bvh::Node, high) == 24 &&
-              offsetof(plan::Bvh::Node, first) == 48 && offsetof(plan::Bvh::Node, count) == 52);
-static_assert(sizeof(plan::Ray) == sizeof(engine::RenderRay) && offsetof(plan::Ray, direction) == 24 &&
-              offsetof(plan::Ray, limit) == 48);
+static_assert(sizeof(Bvh::Node) == 64 && offsetof(Bvh::Node, high) == 24 && offsetof(Bvh::Node, first) == 48 &&
+              offsetof(Bvh::Node, count) == 52);
+static_assert(sizeof(Ray) == sizeof(engine::RenderRay) && offsetof(Ray, direction) == 24 && offsetof(Ray, limit) == 48);
 static_assert(engine::render_nothing == plan::no_face_hit);
 
 /// As shaders/render.h has them.
@@ -49,13 +48,13 @@ public:
 
   /// The next step of all of them; false at the end.
   bool step(std::span<plan::RenderTile> tiles, Monitor& monitor) {
-    std::vector<std::vector<plan::RayHit>> hits(tiles.size());
+    std::vector<std::vector<RayHit>> hits(tiles.size());
     for (std::size_t i = 0; i < tiles.size(); ++i) {
       hits[i].resize(tiles[i].rays().size());
       for (std::size_t first = 0; first < hits[i].size();) {
         const std::size_t room = engine::Render::most_rays - count_;
         const std::size_t number = std::min(room, hits[i].size() - first);
-        const std::span<const plan::Ray> rays = tiles[i].rays().subspan(first, number);
+        const std::span<const Ray> rays = tiles[i].rays().subspan(first, number);
         std::memcpy(static_cast<void*>(render_.rays().data() + count_), rays.data(), rays.size_bytes());
         parts_.push_back({rays, std::span(hits[i]).subspan(first, number)});
         count_ += number;
@@ -72,8 +71,8 @@ public:
 
 private:
   struct Part {
-    std::span<const plan::Ray> rays;
-    std::span<plan::RayHit> hits;
+    std::span<const Ray> rays;
+    std::span<RayHit> hits;
   };
 
   void cast(Monitor& monitor) {
@@ -82,7 +81,7 @@ private:
     const engine::RenderHit* from = render_.cast(std::uint32_t(count_)).data();
     for (const Part& part : parts_)
       for (std::size_t i = 0; i < part.hits.size(); ++i, ++from) {
-        plan::RayHit& hit = part.hits[i];
+        RayHit& hit = part.hits[i];
         hit = {from->face, from->t, from->u, from->v};
         if (from->face == engine::render_left && !panel_.tree().first_hit(part.rays[i], hit))
           hit.face = plan::no_face_hit;

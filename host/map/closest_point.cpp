@@ -2,7 +2,7 @@
 
 #include "host/backend.hpp"
 #include "host/error.hpp"
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/sphere_directions.hpp"
 
 #include <fmt/format.h>

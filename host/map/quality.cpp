@@ -1,9 +1,9 @@
 #include "host/map/quality.hpp"
 
 #include "host/error.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/mesh/half_edges.hpp"
 #include "host/mesh/topology.hpp"
-#include "host/orientation.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

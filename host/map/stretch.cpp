@@ -1,11 +1,11 @@
 #include "host/map/stretch.hpp"
 
 #include "host/error.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/map/canonical_surface.hpp"
 #include "host/map/stretch_embedding.hpp"
 #include "host/map/stretch_newton.hpp"
 #include "host/mesh/half_edges.hpp"
-#include "host/orientation.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

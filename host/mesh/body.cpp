@@ -1,7 +1,7 @@
 #include "host/mesh/body.hpp"
 
-#include "host/determinant.hpp"
 #include "host/error.hpp"
+#include "host/geometry/determinant.hpp"
 
 #include <fmt/format.h>
 

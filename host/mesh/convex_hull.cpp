@@ -1,6 +1,6 @@
 #include "host/mesh/convex_hull.hpp"
 
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 
 #include <Eigen/Geometry>
 

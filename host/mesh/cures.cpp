@@ -14,7 +14,7 @@ namespace cowgpu {
 
 std::optional<double> volume_amiss(const RawMesh& mesh, Monitor& monitor) {
   if (mesh.faces.size() > most_tried_faces) return {};
-  const plan::Bvh tree(mesh.vertices, mesh.faces);
+  const Bvh tree(mesh.vertices, mesh.faces);
   const SelfIntersections pairs = self_intersections(mesh.vertices, mesh.faces, tree, monitor);
   if (!pairs.complete) return {};
   // Few points: a hint is no measurement, and a refusal should not take long.

@@ -1,6 +1,6 @@
 #include "host/mesh/geometry.hpp"
 
-#include "host/determinant.hpp"
+#include "host/geometry/determinant.hpp"
 
 #include <Eigen/Geometry>
 

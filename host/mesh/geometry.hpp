@@ -1,7 +1,7 @@
 // Size, place and shape of a body bounded by triangles: sums of signed tetrahedra.
 //
 // Lengths are in the mesh's own unit, areas in its square, volumes in its cube. All sums run in extended precision
-// (long double, and Quad where they cancel: host/determinant.hpp) relative to the middle of the bounding box, and are
+// (long double, and Quad where they cancel: geometry/determinant.hpp) relative to the middle of the bounding box, and are
 // rounded once: bodies that are thin, hollow or far from the origin lose nothing. The order of the faces is the order of
 // summation: results repeat bit for bit.
 //

@@ -23,14 +23,14 @@ struct Cell {
 
 } // namespace
 
-std::optional<double> inscribed_radius(std::span<const Vec3> vertices, std::span<const Face> faces,
-                                       const plan::Bvh& tree, const plan::Bvh& boundary, const Vec3& about) {
+std::optional<double> inscribed_radius(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
+                                       const Bvh& boundary, const Vec3& about) {
   if (winding_number(tree, vertices, faces, about) <= 0) return std::nullopt;
   return std::sqrt(boundary.closest(about).distance2);
 }
 
-LargestBall largest_ball(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
-                         const plan::Bvh& boundary, Monitor& monitor, std::uint32_t most) {
+LargestBall largest_ball(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
+                         const Bvh& boundary, Monitor& monitor, std::uint32_t most) {
   LargestBall best;
   if (tree.nodes().empty()) return best;
   std::uint32_t looked_at = 0;

@@ -1,8 +1,8 @@
 // Balls inside a body.
 #pragma once
 
+#include "host/geometry/bvh.hpp"
 #include "host/monitor.hpp"
-#include "host/plan/bvh.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -13,8 +13,8 @@ namespace cowgpu {
 /// Radius of the largest ball about a point inside the body: the distance from what bounds it. Nothing where the closed
 /// surface does not wind about the point a positive number of times. `tree` is that of the faces, `boundary` that of
 /// body_boundary(), which a surface that does not meet itself and whose shells hold no others is itself.
-std::optional<double> inscribed_radius(std::span<const Vec3> vertices, std::span<const Face> faces,
-                                       const plan::Bvh& tree, const plan::Bvh& boundary, const Vec3& about);
+std::optional<double> inscribed_radius(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
+                                       const Bvh& boundary, const Vec3& about);
 
 /// A ball, and how large the largest can be.
 struct LargestBall {
@@ -27,7 +27,7 @@ struct LargestBall {
 /// distance changes no faster than its point moves, until bound <= 1.001 radius or `most` points were looked at (long
 /// tubes and plates have many balls nearly as large). Radius 0 where no point inside was found. The trees are those of
 /// inscribed_radius(). Throws Error(interrupted).
-LargestBall largest_ball(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
-                         const plan::Bvh& boundary, Monitor& monitor, std::uint32_t most = 50000);
+LargestBall largest_ball(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
+                         const Bvh& boundary, Monitor& monitor, std::uint32_t most = 50000);
 
 } // namespace cowgpu

@@ -186,7 +186,7 @@ private:
   const RawMesh& mesh_;
   std::span<const std::uint32_t> shell_;
   const std::vector<bool>& closed_;
-  plan::Bvh tree_;
+  Bvh tree_;
   std::vector<bool> meets_;
   std::vector<std::size_t> start_;   // of each shell in faces_
   std::vector<std::uint32_t> faces_; // by shell

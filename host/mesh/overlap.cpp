@@ -1,9 +1,9 @@
 #include "host/mesh/overlap.hpp"
 
+#include "host/geometry/orientation.hpp"
 #include "host/mesh/face_pieces.hpp"
 #include "host/mesh/topology.hpp"
 #include "host/mesh/winding.hpp"
-#include "host/orientation.hpp"
 #include "host/parallel.hpp"
 
 #include <Eigen/Geometry>
@@ -30,8 +30,7 @@ std::array<int, region_count> regions(int winding) {
 
 class Boundary {
 public:
-  Boundary(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
-           const SelfIntersections& found)
+  Boundary(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree, const SelfIntersections& found)
       : vertices_(vertices), faces_(faces), tree_(tree), start_(faces.size() + 1) {
     if (!tree.nodes().empty())
       size_ = std::max(tree.nodes()[0].low.cwiseAbs().maxCoeff(), tree.nodes()[0].high.cwiseAbs().maxCoeff());
@@ -141,7 +140,7 @@ private:
 
   std::span<const Vec3> vertices_;
   std::span<const Face> faces_;
-  const plan::Bvh& tree_;
+  const Bvh& tree_;
   double size_ = 0;
   std::vector<std::size_t> start_;     // where the pairs of each face begin
   std::vector<const FacePair*> pairs_; // that cut it
@@ -214,7 +213,7 @@ RegionVolume region_volume(std::span<const Vec3> vertices, std::span<const Face>
 /// ratio (M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018). Twice the standard error of as many
 /// random points.
 std::array<RegionVolume, 2> sampled_volumes(std::span<const Vec3> vertices, std::span<const Face> faces,
-                                            const plan::Bvh& tree, Monitor& monitor, unsigned threads,
+                                            const Bvh& tree, Monitor& monitor, unsigned threads,
                                             std::size_t most_points) {
   constexpr std::size_t points_a_task = 4096;
   const std::size_t tasks = std::max<std::size_t>(1, most_points / points_a_task);
@@ -244,7 +243,7 @@ std::array<RegionVolume, 2> sampled_volumes(std::span<const Vec3> vertices, std:
 
 } // namespace
 
-Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
+Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
                 const SelfIntersections& found, Monitor& monitor, unsigned threads, std::size_t most_points) {
   const Boundary boundary(vertices, faces, tree, found);
   const std::vector<Parts> parts = parts_of_faces(vertices, faces, boundary, monitor, threads);
@@ -260,7 +259,7 @@ Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, con
   return {found_volumes[0], found_volumes[1]};
 }
 
-TriangleSheet body_boundary(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
+TriangleSheet body_boundary(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
                             const SelfIntersections& found, Monitor& monitor, unsigned threads) {
   const Boundary boundary(vertices, faces, tree, found);
   const std::vector<Parts> parts = parts_of_faces(vertices, faces, boundary, monitor, threads);

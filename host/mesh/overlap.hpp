@@ -1,9 +1,9 @@
 // The volume that a closed surface encloses more than once, or the wrong way round.
 #pragma once
 
+#include "host/geometry/bvh.hpp"
 #include "host/mesh/self_intersections.hpp"
 #include "host/monitor.hpp"
-#include "host/plan/bvh.hpp"
 
 #include <span>
 #include <vector>
@@ -35,7 +35,7 @@ struct Overlap {
 ///
 /// Of a closed surface whose edges are run as often one way as the other; for others the result means nothing. `tree` is
 /// that of the faces, `pairs` all their intersections. The same on any number of threads. Throws Error(interrupted).
-Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
+Overlap overlap(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
                 const SelfIntersections& pairs, Monitor& monitor, unsigned threads = 0,
                 std::size_t most_points = std::size_t(1) << 19);
 
@@ -49,7 +49,7 @@ struct TriangleSheet {
 /// nothing cuts are whole, others cut as for overlap(), with corners rounded. Parts inside the body, as of shells that pass
 /// through each other, and outside of it, as of shells that look inwards, are left out. Expects and throws what overlap()
 /// does.
-TriangleSheet body_boundary(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
+TriangleSheet body_boundary(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
                             const SelfIntersections& pairs, Monitor& monitor, unsigned threads = 0);
 
 } // namespace cowgpu

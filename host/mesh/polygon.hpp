@@ -31,7 +31,7 @@ struct CutPolygon {
 /// a mesh that was closed stays closed. Keeps its room between polygons.
 ///
 /// The plane is that of the area vector (Newell's sum of cross products), seen along the axis that is steepest to it; there
-/// every decision is an exact sign (orientation.hpp). The fan from the first corner is kept where it covers the polygon once
+/// every decision is an exact sign (geometry/orientation.hpp). The fan from the first corner is kept where it covers the polygon once
 /// and has no triangle without area that another cut would avoid; this includes all strictly convex polygons. Any other
 /// polygon is swept once by increasing coordinate, which proves it simple (M. I. Shamos, D. Hoey, Proc. 17th FOCS (1976) 208)
 /// and cuts it (S. Hertel, K. Mehlhorn, Proc. FCT (1983) 207): triangles have exactly positive areas, corners of 180 degrees

@@ -1,6 +1,6 @@
 #include "host/mesh/polygon_sweep.hpp"
 
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 
 #include <algorithm>
 #include <cmath>

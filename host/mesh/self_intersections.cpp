@@ -8,8 +8,6 @@
 namespace cowgpu {
 namespace {
 
-using plan::Bvh;
-
 struct Bounds {
   Vec3 low, high;
   bool meets(const Vec3& other_low, const Vec3& other_high) const {

@@ -1,9 +1,9 @@
 // Where a surface meets itself.
 #pragma once
 
+#include "host/geometry/bvh.hpp"
 #include "host/mesh/triangle_pair.hpp"
 #include "host/monitor.hpp"
-#include "host/plan/bvh.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +36,7 @@ inline constexpr std::size_t most_pairs = std::size_t(1) << 22;
 /// a line) are left out: they are degenerate and bound nothing. `tree` is that of these faces. Indices must be valid and
 /// coordinates finite, of at most 1e100. Time grows with the faces and with pairs of overlapping boxes. Throws
 /// Error(interrupted).
-SelfIntersections self_intersections(std::span<const Vec3> vertices, std::span<const Face> faces, const plan::Bvh& tree,
+SelfIntersections self_intersections(std::span<const Vec3> vertices, std::span<const Face> faces, const Bvh& tree,
                                      Monitor& monitor, unsigned threads = 0);
 
 } // namespace cowgpu

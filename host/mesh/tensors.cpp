@@ -1,6 +1,6 @@
 #include "host/mesh/tensors.hpp"
 
-#include "host/determinant.hpp"
+#include "host/geometry/determinant.hpp"
 #include "host/mesh/geometry.hpp"
 
 namespace cowgpu {

@@ -1,20 +1,20 @@
 #include "host/mesh/winding.hpp"
 
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 
 namespace cowgpu {
 
-void crossings(const plan::Bvh& tree, std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& point,
+void crossings(const Bvh& tree, std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& point,
                std::vector<Crossing>& found) {
   found.clear();
-  const std::span<const plan::Bvh::Node> nodes = tree.nodes();
+  const std::span<const Bvh::Node> nodes = tree.nodes();
   if (nodes.empty()) return;
   const bool up = point.z() > nodes[0].low.z() / 2 + nodes[0].high.z() / 2;
-  std::uint32_t stack[plan::Bvh::deepest + 1] = {0};
+  std::uint32_t stack[Bvh::deepest + 1] = {0};
   int waiting = 1;
   while (waiting) {
     const std::uint32_t at = stack[--waiting];
-    const plan::Bvh::Node& node = nodes[at];
+    const Bvh::Node& node = nodes[at];
     if (point.x() < node.low.x() || point.x() > node.high.x() || point.y() < node.low.y() ||
         point.y() > node.high.y() || (up ? point.z() > node.high.z() : point.z() < node.low.z()))
       continue;
@@ -32,8 +32,7 @@ void crossings(const plan::Bvh& tree, std::span<const Vec3> vertices, std::span<
   }
 }
 
-int winding_number(const plan::Bvh& tree, std::span<const Vec3> vertices, std::span<const Face> faces,
-                   const Vec3& point) {
+int winding_number(const Bvh& tree, std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& point) {
   thread_local std::vector<Crossing> found;
   crossings(tree, vertices, faces, point, found);
   int winding = 0;

@@ -1,11 +1,11 @@
 #include "host/mesh/winding_notes.hpp"
 
 #include "host/counted.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/mesh/cures.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/overlap.hpp"
 #include "host/mesh/topology.hpp"
-#include "host/orientation.hpp"
 
 #include <fmt/format.h>
 
@@ -171,7 +171,7 @@ std::vector<std::string> winding_notes(const ClosedSurface& surface, Monitor& mo
         most_measured_faces, left_out == 0 ? std::string() : fmt::format(", nor how {} shells lie", left_out)));
     return notes;
   }
-  const plan::Bvh tree(vertices, faces);
+  const Bvh tree(vertices, faces);
   const SelfIntersections pairs = self_intersections(vertices, faces, tree, monitor, threads);
   if (!pairs.complete) {
     notes.push_back("Too many faces pass through each other for the volume that is counted twice to be measured.");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
@@ -160,6 +161,22 @@ void add_tipping(Numbers& all) {
     all.push_back({"tipping", item, {fmt::format("{:g}", sustained_force_N)}, "N", reason, 11});
 }
 
+// The paper's formula has another factor before the moments.
+void add_potential(Numbers& all) {
+  for (const int l : {0, 2}) {
+    const double printed = std::sqrt(4 * std::numbers::pi / (2 * l + 1));
+    all.push_back({"potential",
+                   fmt::format("factor of G Q_lm / r^(l+1), l = {}", l),
+                   {fmt::format("{:.12g}", printed)},
+                   "",
+                   l == 0 ? "Q_00 = M/sqrt(4 pi) must give -G M/r: 4 pi/(2l + 1), not its square root"
+                          : "the same for the quadrupole",
+                   3,
+                   l});
+    all.back().value = printed;
+  }
+}
+
 Numbers all_numbers() {
   Numbers all;
   add_box(all);
@@ -178,6 +195,7 @@ Numbers all_numbers() {
               all);
   add_spectrum(all);
   add_tipping(all);
+  add_potential(all);
   return all;
 }
 

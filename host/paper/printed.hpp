@@ -25,7 +25,7 @@ struct Printed {
 };
 
 /// All of them, table by table: bounding box, mass multipoles, tensors, radiation, gradient flow, harmonic map, the spectrum,
-/// tipping.
+/// tipping, and factors of the potential.
 const std::vector<Printed>& printed();
 
 /// One of them. Throws std::out_of_range where the paper has no such number.

@@ -2,9 +2,9 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/geometry/morton.hpp"
 #include "host/parallel.hpp"
 #include "host/plan/closest_query.hpp"
-#include "host/plan/morton.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "host/plan/closest_query.hpp"
 
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/plan/closest_kernel.hpp"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #include "host/plan/closest_texels.hpp"
 
-#include "host/plan/bvh.hpp"
+#include "host/geometry/bvh.hpp"
 
 #include <bit>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/geometry/morton.hpp"
 #include "host/plan/closest_tree.hpp"
-#include "host/plan/morton.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "host/plan/moments.hpp"
 
-#include "host/determinant.hpp"
 #include "host/error.hpp"
+#include "host/geometry/determinant.hpp"
 #include "host/plan/pairing.hpp"
 
 #include <fmt/format.h>

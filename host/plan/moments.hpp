@@ -22,7 +22,7 @@
 // degree's bound stays normal. Below that, rows of vertices near the z axis pass through denormals, which the paths count
 // as zero (host/flush_denormals.hpp).
 //
-// Determinants. Both paths take det from host/determinant.hpp, which computes it again in more bits where it cancels: of
+// Determinants. Both paths take det from geometry/determinant.hpp, which computes it again in more bits where it cancels: of
 // thin bodies it would else be the largest error. The vertices a, b, c less the origin, over R, are rounded to doubles;
 // that moves t_l by some l units in its last place, as the recursion itself does.
 //

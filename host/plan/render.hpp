@@ -7,8 +7,8 @@
 // together. The same hits give the same pixels.
 #pragma once
 
+#include "host/geometry/bvh.hpp"
 #include "host/image.hpp"
-#include "host/plan/bvh.hpp"
 #include "host/render.hpp"
 
 #include <cstdint>

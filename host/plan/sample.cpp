@@ -1,7 +1,7 @@
 #include "host/plan/sample.hpp"
 
 #include "host/error.hpp"
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/parallel.hpp"
 
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 // Reference of the stage `moments`: plain scalar code on any number type, the oracle of both fast paths.
 #pragma once
 
-#include "host/determinant.hpp"
+#include "host/geometry/determinant.hpp"
 #include "host/moment_problem.hpp"
 #include "host/monitor.hpp"
 #include "host/multipoles.hpp"

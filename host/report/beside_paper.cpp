@@ -88,4 +88,12 @@ std::vector<Comparison> beside_paper(const TipResult& found, const Monitor& moni
   return rows;
 }
 
+std::vector<Comparison> potential_beside_paper() {
+  std::vector<Comparison> rows;
+  for (const int l : {0, 2})
+    rows.push_back(paper::beside("potential", fmt::format("factor of G Q_lm / r^(l+1), l = {}", l),
+                                 4 * std::numbers::pi / (2 * l + 1)));
+  return rows;
+}
+
 } // namespace cowgpu

@@ -19,4 +19,7 @@ std::vector<physics::Comparison> beside_paper(const RadiationResult& found);
 /// Forces of the body, of a ball like it, and of the benchmark on its hooves as modelled, which this stands up.
 std::vector<physics::Comparison> beside_paper(const TipResult& found, const Monitor& monitor);
 
+/// Factors of the potential's formula, which in the paper are others.
+std::vector<physics::Comparison> potential_beside_paper();
+
 } // namespace cowgpu

@@ -22,6 +22,7 @@ struct DropOutcome {
   bool lands_on_its_feet() const { return tilt_after <= lands_within; }
 };
 
+/// What `cowgpu drop` shows of it: rows, tables and notes with their units.
 physics::Findings findings(const DropOutcome& outcome);
 
 } // namespace cowgpu

@@ -26,6 +26,7 @@ struct RadiationResult {
   std::optional<physics::SpinDown> spin;    ///< where units are stated and the moment is known
 };
 
+/// What `cowgpu radiate` shows of it: rows, tables and notes with their units.
 physics::Findings findings(const RadiationResult& result);
 
 } // namespace cowgpu

@@ -12,6 +12,7 @@ struct TensorsResult {
   physics::PrincipalAxes principal;
 };
 
+/// What `cowgpu tensors` shows of it: rows, tables and notes with their units.
 physics::Findings findings(const TensorsResult& result);
 
 } // namespace cowgpu

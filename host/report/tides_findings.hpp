@@ -34,6 +34,7 @@ struct TidesResult {
   std::vector<AttitudeShift> shifts;          ///< none without degrees above 2
 };
 
+/// What `cowgpu tides` shows of it: rows, tables and notes with their units.
 physics::Findings findings(const TidesResult& result);
 
 } // namespace cowgpu

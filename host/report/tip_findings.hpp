@@ -45,6 +45,7 @@ struct TipResult {
   std::optional<PushOutcome> push; ///< where units are stated and not every push tips it
 };
 
+/// What `cowgpu tip` shows of it: rows, tables and notes with their units.
 physics::Findings findings(const TipResult& result);
 
 } // namespace cowgpu

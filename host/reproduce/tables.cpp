@@ -141,7 +141,8 @@ Row row_of(const Printed& p, const Documents& documents) {
 
 std::vector<Row> paper_rows(const Documents& documents) {
   std::vector<Row> rows;
-  for (const Printed& p : paper::printed()) rows.push_back(row_of(p, documents));
+  for (const Printed& p : paper::printed())
+    if (p.table != "potential") rows.push_back(row_of(p, documents)); // formulas of every body
   return rows;
 }
 

@@ -1,12 +1,11 @@
 // What `diff` computes: two files of coefficients, degree by degree.
 #pragma once
 
-#include "host/spectrum/difference.hpp"
+#include "host/report/diff_report.hpp"
 
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace cowgpu {
 
@@ -18,12 +17,7 @@ struct DiffRequest {
   std::optional<double> metres; ///< length of the unit of the one or both files that do not say it
 };
 
-struct DiffResult {
-  CoefficientDifference difference;
-  std::vector<std::string> notes; ///< sentences of the readers, which begin with "A: " or "B: "
-};
-
-/// Brings the second file's coefficients to kind and reference radius of the first's, and takes them apart. Throws what
+/// The caller fills in `command`. Brings the second file's coefficients to kind and reference radius of the first's, and takes them apart. Throws what
 /// read_coefficient_set() and difference() throw; Error(bad_argument) for a unit that neither file needs.
 DiffResult diff(const DiffRequest& request);
 

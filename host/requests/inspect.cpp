@@ -41,13 +41,13 @@ Inspection inspect(RawMesh mesh, Monitor& monitor, unsigned threads) {
   const std::vector<Face>& faces = found.mesh.faces;
   const double largest = std::max(a.box.min.cwiseAbs().maxCoeff(), a.box.max.cwiseAbs().maxCoeff());
   if (!a.finite || faces.empty() || largest > largest_coordinate) return found;
-  const plan::Bvh tree(vertices, faces);
+  const Bvh tree(vertices, faces);
   found.intersections = self_intersections(vertices, faces, tree, monitor, threads);
   if (!a.volume) return found;
   if (!found.intersections->complete) return found;
   found.overlap = overlap(vertices, faces, tree, *found.intersections, monitor, threads);
   const TriangleSheet sheet = body_boundary(vertices, faces, tree, *found.intersections, monitor, threads);
-  const plan::Bvh boundary(sheet.vertices, sheet.faces);
+  const Bvh boundary(sheet.vertices, sheet.faces);
   if (const LargestBall ball = largest_ball(vertices, faces, tree, boundary, monitor); ball.radius > 0)
     found.largest_ball = ball;
   if (!a.centre_of_mass) return found;

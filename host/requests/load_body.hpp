@@ -92,7 +92,7 @@ physics::Subject subject(const LoadedMass& loaded);
 /// A sentence about a file that does not say the radius of the sphere that holds its body; empty for all other inputs.
 std::string unknown_radius_note(const LoadedMass& loaded);
 
-/// Notes on a body whose units are stated and whose density was not: what was taken.
+/// A sentence on the density that was taken where units are stated and it was not; empty elsewhere.
 std::string density_note(const BodyRequest& request, const Units& units);
 
 } // namespace cowgpu

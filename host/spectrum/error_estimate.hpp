@@ -13,7 +13,7 @@
 // with 8 for the steps that every degree takes, l for the recursion and for the vertices, which are moved to the origin, divided
 // by R and rounded, sqrt(N)/4 for the sum, 6 for normalisation and the result's own rounding, and 2 for chance; left_out_l is
 // what the cut-off left out. A_l is far above |Q_l| where terms cancel: on hollow bodies, about far origins, in degrees that
-// a symmetry forbids. Determinants need no term, because they are computed to the last place (host/determinant.hpp), and with them the
+// a symmetry forbids. Determinants need no term, because they are computed to the last place (geometry/determinant.hpp), and with them the
 // mass: E_0 = 4 u |Q_0| + 2^-98 B_0, B_l the bound of plan::degree_bound(). Of several parts E_l^2 adds, before the parts
 // cancel. Moments about a far origin are moved there, and their errors with them (host/spectrum/translate.hpp).
 #pragma once

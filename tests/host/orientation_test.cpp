@@ -1,4 +1,4 @@
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>

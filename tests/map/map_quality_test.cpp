@@ -1,6 +1,6 @@
 #include "host/error.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/map/quality.hpp"
-#include "host/orientation.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/meshes.hpp"
 

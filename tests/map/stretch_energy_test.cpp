@@ -1,8 +1,8 @@
+#include "host/geometry/orientation.hpp"
 #include "host/map/canonical_surface.hpp"
 #include "host/map/collapse.hpp"
 #include "host/map/stretch_energy.hpp"
 #include "host/map/stretch_newton.hpp"
-#include "host/orientation.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "host/plan/bvh.hpp"
+#include "host/geometry/bvh.hpp"
 
 #include "host/error.hpp"
 #include "host/mesh/builtin.hpp"
@@ -10,7 +10,6 @@
 #include <random>
 
 using namespace cowgpu;
-using plan::Bvh;
 
 namespace {
 
@@ -37,7 +36,7 @@ TEST_CASE("closest points of a box are where they must be", "[bvh]") {
     double worst = 0;
     for (int i = 0; i < 3000; ++i) {
       const Vec3 p = uniform(random, -1.5, 1.5);
-      const plan::ClosestPoint found = tree.closest(p);
+      const ClosestPoint found = tree.closest(p);
       worst = std::max(worst, std::abs(std::sqrt(found.distance2) - box_distance(p + Vec3::Constant(0.5))));
       worst = std::max(worst, std::abs((found.point - p).norm() - std::sqrt(found.distance2)));
     }
@@ -62,11 +61,11 @@ TEST_CASE("the tree finds what a search of every triangle finds, with the same f
   std::size_t hits = 0;
   for (int i = 0; i < 400; ++i) {
     const Vec3 p = uniform(random, -10, 10);
-    plan::ClosestPoint best;
+    ClosestPoint best;
     for (std::size_t f = 0; f < single.size(); ++f)
       if (const auto c = single[f].closest(p); c.distance2 < best.distance2)
         best = {std::uint32_t(f), c.point, c.distance2};
-    const plan::ClosestPoint found = tree.closest(p);
+    const ClosestPoint found = tree.closest(p);
     CHECK(found.distance2 == best.distance2);
     CHECK(found.face == best.face);
     CHECK(tree.closest(p, best.distance2).distance2 == HUGE_VAL);
@@ -75,13 +74,13 @@ TEST_CASE("the tree finds what a search of every triangle finds, with the same f
     Vec3 d = uniform(random, -1, 1);
     if (i % 4 == 0) d[i / 4 % 3] = 0;
     if (i % 16 == 0) d = Vec3::Unit(i / 16 % 3);
-    const plan::Ray ray{p, d, i % 2 ? HUGE_VAL : 8.0};
-    plan::RayHit first, one;
+    const Ray ray{p, d, i % 2 ? HUGE_VAL : 8.0};
+    RayHit first, one;
     bool any = false;
     first.t = HUGE_VAL;
     for (std::size_t f = 0; f < single.size(); ++f)
       if (single[f].first_hit(ray, one) && one.t < first.t) first = one, first.face = std::uint32_t(f), any = true;
-    plan::RayHit hit;
+    RayHit hit;
     REQUIRE(tree.first_hit(ray, hit) == any);
     if (!any) continue;
     ++hits;
@@ -96,7 +95,7 @@ TEST_CASE("no ray slips through an edge or a corner", "[bvh]") {
   const Bvh round(sphere.vertices, sphere.faces), flat(box.vertices, box.faces);
   std::mt19937 random(5);
   std::size_t missed = 0;
-  plan::RayHit hit;
+  RayHit hit;
   for (const Face& f : sphere.faces)
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 a = sphere.vertices[f[k]], b = sphere.vertices[f[(k + 1) % 3]];
@@ -122,7 +121,7 @@ TEST_CASE("no ray slips through an edge or a corner", "[bvh]") {
 
 TEST_CASE("a tree of nothing, of one point and of many equal triangles works", "[bvh]") {
   const Bvh none({}, {});
-  plan::RayHit hit;
+  RayHit hit;
   CHECK_FALSE(none.first_hit({Vec3::Zero(), Vec3(1, 0, 0)}, hit));
   CHECK(none.closest(Vec3::Zero()).distance2 == HUGE_VAL);
   const std::vector<Vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -1,8 +1,8 @@
 #include "host/mesh/convex_hull.hpp"
 
 #include "host/flow/flow_map.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/mesh/geometry.hpp"
-#include "host/orientation.hpp"
 #include "host/sphere_grid.hpp"
 #include "tests/support/meshes.hpp"
 

@@ -1,8 +1,8 @@
 #include "host/mesh/self_intersections.hpp"
 
 #include "host/error.hpp"
+#include "host/geometry/orientation.hpp"
 #include "host/mesh/builtin.hpp"
-#include "host/orientation.hpp"
 #include "tests/support/cgal_intersections.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -18,7 +18,7 @@ using namespace cowgpu::test;
 namespace {
 
 SelfIntersections intersections(const RawMesh& mesh, unsigned threads = 0) {
-  return self_intersections(mesh.vertices, mesh.faces, plan::Bvh(mesh.vertices, mesh.faces), silent_monitor(), threads);
+  return self_intersections(mesh.vertices, mesh.faces, Bvh(mesh.vertices, mesh.faces), silent_monitor(), threads);
 }
 
 // Another way to the same answer, in rational numbers: what two triangles have in common is a polygon, made by clipping one
@@ -160,7 +160,7 @@ TEST_CASE("the common segment of crossing faces lies in both", "[self-intersecti
   double worst = 0;
   for (const FacePair& pair : found.pairs)
     for (const std::uint32_t face : {pair.first, pair.second}) {
-      const plan::Bvh one(mesh.vertices, std::span(&mesh.faces[face], 1));
+      const Bvh one(mesh.vertices, std::span(&mesh.faces[face], 1));
       for (const Vec3& p : {pair.how.from, pair.how.to}) worst = std::max(worst, std::sqrt(one.closest(p).distance2));
     }
   INFO(worst);
@@ -200,8 +200,7 @@ TEST_CASE("a search for pairs stops when told to", "[self-intersections]") {
     bool stopped() const override { return true; }
   } impatient;
   const RawMesh mesh = icosphere(2);
-  CHECK_THROWS_AS(self_intersections(mesh.vertices, mesh.faces, plan::Bvh(mesh.vertices, mesh.faces), impatient),
-                  Error);
+  CHECK_THROWS_AS(self_intersections(mesh.vertices, mesh.faces, Bvh(mesh.vertices, mesh.faces), impatient), Error);
 }
 
 TEST_CASE("as many pairs meet as CGAL finds", "[self-intersections][cgal]") {

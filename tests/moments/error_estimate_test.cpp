@@ -1,6 +1,6 @@
 // The estimated error of each degree against the true one, taken in 113 bits from the input's own doubles: thin and hollow
 // bodies, far origins, parts far away; and that a wrong path is still caught.
-#include "host/determinant.hpp"
+#include "host/geometry/determinant.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/mesh/builtin.hpp"
 #include "host/mesh/geometry.hpp"

@@ -16,8 +16,8 @@ Image reference_picture(const RenderScene& scene) {
     const plan::RenderedPanel panel(scene.panels[p], scene);
     for (plan::RenderTile& tile : plan::render_tiles(panel, scene, 0, plan::render_tile_count(scene))) {
       while (!tile.rays().empty()) {
-        std::vector<plan::RayHit> hits;
-        for (const plan::Ray& ray : tile.rays()) {
+        std::vector<RayHit> hits;
+        for (const Ray& ray : tile.rays()) {
           const auto hit =
               reference::first_hit<long double>(panel.vertices(), panel.faces(), ray.origin, ray.direction, ray.limit);
           hits.push_back({hit.face, double(hit.t), double(hit.u), double(hit.v)});

@@ -1,4 +1,4 @@
-#include "host/plan/bvh.hpp"
+#include "host/geometry/bvh.hpp"
 
 #include <Eigen/Geometry>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace cowgpu::plan {
+namespace cowgpu {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -279,4 +279,4 @@ ClosestPoint Bvh::closest(const Vec3& point, double below) const {
   }
 }
 
-} // namespace cowgpu::plan
+} // namespace cowgpu

@@ -1,4 +1,4 @@
-#include "host/orientation.hpp"
+#include "host/geometry/orientation.hpp"
 
 #include <algorithm>
 #include <array>

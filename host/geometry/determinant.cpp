@@ -1,4 +1,4 @@
-#include "host/determinant.hpp"
+#include "host/geometry/determinant.hpp"
 
 #include <cmath>
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace cowgpu::plan {
+namespace cowgpu {
 
 struct Ray {
   Vec3 origin, direction;                                 ///< the direction of any length but 0
@@ -70,4 +70,4 @@ private:
   std::vector<std::uint32_t> faces_; ///< their indices in the input
 };
 
-} // namespace cowgpu::plan
+} // namespace cowgpu

@@ -1,4 +1,4 @@
-#include "host/plan/morton.hpp"
+#include "host/geometry/morton.hpp"
 
 #include "host/parallel.hpp"
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-namespace cowgpu::plan {
+namespace cowgpu {
 namespace {
 
 constexpr int key_bits = 30, digit_bits = 10;
@@ -62,4 +62,4 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points, const Vec3
   return order;
 }
 
-} // namespace cowgpu::plan
+} // namespace cowgpu

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-namespace cowgpu::plan {
+namespace cowgpu {
 
 /// The order of points along a Morton curve of 2^10 cells a side through [low, high]; points outside count as on its sides.
 /// Points of one cell keep their order. On `threads` threads (0: all).
 std::vector<std::uint32_t> morton_order(std::span<const Vec3> points, const Vec3& low, const Vec3& high,
                                         unsigned threads);
 
-} // namespace cowgpu::plan
+} // namespace cowgpu
