@@ -3,7 +3,7 @@
 #include <host/error.hpp>
 #include <host/io/mesh_source.hpp>
 #include <host/mesh/body.hpp>
-#include <host/spectrum/mass_moments.hpp>
+#include <host/mass/mass_moments.hpp>
 
 #include <cstdio>
 
