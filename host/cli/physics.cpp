@@ -3,9 +3,9 @@
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
 #include "host/io/mesh_source.hpp"
-#include "host/physics/paper.hpp"
 #include "host/report/findings_report.hpp"
 #include "host/report/json_parts.hpp"
+#include "host/requests/paper_recipe.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -59,11 +59,12 @@ constexpr std::array applications = {
 
 // The paper's body, but for what the user says.
 void take_paper_body(Command& command, BodyOptions& body) {
-  if (command.get_option("mesh")->count() == 0) body.mesh = physics::paper::mesh;
+  const BodyRequest paper = paper_body();
+  if (command.get_option("mesh")->count() == 0) body.mesh = paper.mesh;
   if (is_coefficient_file(body.mesh))
     throw Error(Fault::bad_argument, "--recipe paper is about the paper's mesh, and this is a file of coefficients");
-  if (body.length_unit.empty() && body.length.empty()) body.length_unit = physics::paper::length_unit;
-  if (body.density_option->count() == 0) body.density = physics::paper::density;
+  if (body.length_unit.empty() && body.length.empty()) body.length_unit = fmt::format("{}m", *paper.length_unit);
+  if (body.density_option->count() == 0) body.density = fmt::format("{}kg/m3", *paper.density);
   body.density_stated = true;
 }
 

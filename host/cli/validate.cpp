@@ -3,7 +3,7 @@
 
 #include "host/error.hpp"
 #include "host/report/result.hpp"
-#include "host/mass/validate.hpp"
+#include "host/requests/validate.hpp"
 
 #include <fmt/format.h>
 

@@ -46,7 +46,9 @@ struct Table {
 struct Comparison {
   std::string quantity;
   double ours = 0, printed = 0;
-  std::string why = {}; ///< they differ: a sentence, or empty where it is the last printed digit
+  std::string why = {};   ///< they differ: a sentence, or empty where it is the last printed digit
+  double uncertainty = 0; ///< uncertainty of ours, where it is more than rounding
+  int erratum = 0;        ///< the number of the erratum that it shows (host/paper/errata.hpp); 0: none
 };
 
 /// The input that findings are about, and what there is to say of it.

@@ -6,8 +6,9 @@
 #include "host/map/sample_fields.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/paper/recipe.hpp"
+#include "host/paper/surface_tables.hpp"
 #include "host/reference/flow.hpp"
-#include "host/spectrum/paper_tables.hpp"
 #include "host/spectrum/power.hpp"
 #include "host/spectrum/surface_fields.hpp"
 #include "host/sphere_directions.hpp"
@@ -206,7 +207,8 @@ TEST_CASE("the paper's recipe gives the paper's table of the flow as near as dis
   if (!cow) return skip_without_cow();
   const auto backend = make_cpu_backend();
   Monitor monitor;
-  const SphereMap map = paper_flow_map(cow->mesh(), Vec3::Zero(), *backend, monitor);
+  const SphereMap map =
+      stepped_flow_map(cow->mesh(), Vec3::Zero(), paper::flow_time, paper::flow_step, *backend, monitor);
   ExpandSurfaceOptions options;
   options.lmax = 32;
   options.closest_point = true;

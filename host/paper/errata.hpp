@@ -2,12 +2,13 @@
 #pragma once
 
 #include "host/mesh/body.hpp"
+#include "host/physics/findings.hpp"
 
 #include <span>
 #include <string>
 #include <vector>
 
-namespace cowgpu::physics {
+namespace cowgpu::paper {
 
 /// One mistake: in words, and by which command the right thing is had.
 struct Erratum {
@@ -21,18 +22,15 @@ struct Erratum {
 /// All of them, numbered from 1 without gaps.
 std::span<const Erratum> errata();
 
-/// A number that an erratum is about: as it is right, and as the paper has it or what its formula gives.
-struct ErratumNumber {
-  int erratum = 0;
-  std::string quantity;
-  double right = 0, printed = 0;
-  double uncertainty = 0; ///< uncertainty of `right`, where it is more than rounding
-};
-
-/// Those that follow from the paper's own numbers and formulas.
-std::vector<ErratumNumber> errata_numbers();
+/// Numbers that show errata: as they are right ("ours"), and as the paper has them or what its formula gives; these follow from
+/// the paper's own numbers and formulas.
+std::vector<physics::Comparison> errata_numbers();
 
 /// Those that take the paper's body, its benchmark: density 1, in the mesh's unit, about the centre of mass.
-std::vector<ErratumNumber> errata_numbers(const Body& benchmark);
+std::vector<physics::Comparison> errata_numbers(const Body& benchmark);
 
-} // namespace cowgpu::physics
+/// One of them.
+physics::Comparison erratum_number(int erratum, std::string quantity, double right, double printed,
+                                   double uncertainty = 0);
+
+} // namespace cowgpu::paper

@@ -1,8 +1,8 @@
-#include "host/physics/errata.hpp"
+#include "host/paper/errata.hpp"
 
 #include <array>
 
-namespace cowgpu::physics {
+namespace cowgpu::paper {
 namespace {
 
 constexpr std::array list = {
@@ -82,4 +82,4 @@ std::span<const Erratum> errata() {
   return list;
 }
 
-} // namespace cowgpu::physics
+} // namespace cowgpu::paper

@@ -1,4 +1,4 @@
-#include "host/mass/validate.hpp"
+#include "host/requests/validate.hpp"
 
 #include "host/moment_terms.hpp"
 #include "host/plan/moments.hpp"

@@ -1,4 +1,4 @@
-#include "host/spectrum/paper_tables.hpp"
+#include "host/paper/surface_tables.hpp"
 
 #include "host/error.hpp"
 
