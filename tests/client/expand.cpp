@@ -9,10 +9,12 @@ int main(int argc, char** argv) try {
   const auto backend = cowgpu::make_cpu_backend();
   std::vector<std::string> notes;
   cowgpu::Body body = cowgpu::load_body({mesh}, notes, monitor);
-  const cowgpu::ExpandResult all = cowgpu::expand({cowgpu::all_expansions(16)}, std::move(body), *backend, monitor, notes);
+  const cowgpu::ExpandResult all =
+      cowgpu::expand({cowgpu::all_expansions(16)}, std::move(body), *backend, monitor, notes);
   std::printf("mass %.12g\n", all.body.mass());
   for (const cowgpu::SurfaceResult& surface : all.surfaces)
-    std::printf("%s: f_r of degree 0 %.12g\n", surface.name.c_str(), surface.expansion.coefficients.at(0, 0, 0).real());
+    std::printf("%s: f_r at degree 0 %.12g\n", name(surface.of).data(),
+                surface.expansion.coefficients.at(0, 0, 0).real());
   const cowgpu::ReconstructReport seven = cowgpu::reconstruct({{mesh}, {7}}, *backend, monitor);
   std::printf("order 7: volume %.12g\n", seven.orders[0].measures.volume);
 } catch (const cowgpu::Error& error) {

@@ -12,7 +12,8 @@ int main(int argc, char** argv) try {
   cowgpu::Monitor monitor;
   const auto backend = cowgpu::make_cpu_backend();
   const cowgpu::TipResult result = cowgpu::tip(request, *backend, monitor);
-  std::printf("mass %.12g kg, force %.12g N\n", result.body.mass, result.forces.chosen().force * result.forces.weight());
+  std::printf("mass %.12g kg, force %.12g N\n", result.body.mass,
+              result.forces.chosen().force * result.forces.weight());
   for (const cowgpu::TippedOrder& order : result.orders)
     if (order.forces)
       std::printf("order %d: %.12g N\n", order.order, order.forces->chosen().force * order.forces->weight());
