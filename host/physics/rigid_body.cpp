@@ -5,7 +5,7 @@
 #include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
 #include "host/spectrum/convert.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

@@ -40,7 +40,7 @@ void write_screen(const RoundtripResult& o, const Sink& sink) {
   sink(fmt::format("  {:<18} {:.2e}  largest error over largest coefficient (bound {:.1e}: {})\n", "max_error",
                    o.error.max, o.bound, o.passed() ? "passed" : "FAILED"));
   sink(fmt::format("  {:<18} {:.2e}  root mean square, relative\n", "rms_error", o.error.rms));
-  const auto seconds = [](const char* what, double value, const char* remark) {
+  const auto seconds = [&](const char* what, double value, const char* remark) {
     sink(fmt::format("  {:<18} {:.6f} s{}\n", what, value, remark));
   };
   seconds("set-up", o.setup_seconds, "  nodes, weights, recurrences");

@@ -2,8 +2,8 @@
 
 #include "host/error.hpp"
 #include "host/mesh/body.hpp"
-#include "host/spectrum/mass_moments.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/mass/mass_moments.hpp"
+#include "host/mass/verify.hpp"
 
 #include <fmt/format.h>
 

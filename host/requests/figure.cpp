@@ -3,7 +3,7 @@
 #include "host/error.hpp"
 #include "host/physics/tip.hpp"
 #include "host/requests/surface_source.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include "host/mesh/winding_notes.hpp"
 #include "host/physics/potential.hpp"
 #include "host/report/result.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 
 #include <fmt/format.h>
 

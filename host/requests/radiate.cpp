@@ -2,7 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/mesh/tensors.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

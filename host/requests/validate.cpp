@@ -3,8 +3,8 @@
 #include "host/moment_terms.hpp"
 #include "host/plan/moments.hpp"
 #include "host/reference/moments.hpp"
-#include "host/spectrum/translate.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/mass/translate.hpp"
+#include "host/mass/verify.hpp"
 
 #include <algorithm>
 #include <cmath>

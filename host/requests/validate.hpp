@@ -3,7 +3,7 @@
 
 #include "host/backend.hpp"
 #include "host/mesh/body.hpp"
-#include "host/spectrum/error_estimate.hpp"
+#include "host/mass/error_estimate.hpp"
 
 #include <string>
 #include <vector>
@@ -28,7 +28,7 @@ struct Validation {
 
 /// Moments of `body` to `lmax` by the reference in extended precision, the CPU path on one and on all threads, and, if
 /// `gpu` is not null, Vulkan, on all triangles; each against the reference, whose error must not exceed the estimate
-/// (host/spectrum/error_estimate.hpp), and run to run; then against closed facts: Q_00 and the volume, the dipole about the
+/// (host/mass/error_estimate.hpp), and run to run; then against closed facts: Q_00 and the volume, the dipole about the
 /// centre of mass, Q_2m and the Cartesian quadrupole tensor. Throws what the backends throw.
 Validation validate_moments(const Body& body, int lmax, double cut_off, Backend* gpu, unsigned threads,
                             Monitor& monitor);

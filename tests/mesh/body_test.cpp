@@ -3,7 +3,7 @@
 #include "host/mesh/body.hpp"
 #include "host/mesh/tensors.hpp"
 #include "host/spectrum/rotation.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/mass/verify.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>

@@ -5,7 +5,7 @@
 #include "host/paper/printed.hpp"
 #include "host/physics/radiate.hpp"
 #include "host/physics/rigid_body.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/units.hpp"
 #include "tests/support/meshes.hpp"
 

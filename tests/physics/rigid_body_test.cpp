@@ -4,7 +4,7 @@
 #include "host/mesh/tensors.hpp"
 #include "host/physics/rigid_body.hpp"
 #include "host/spectrum/convert.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <Eigen/Geometry>

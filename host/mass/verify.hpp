@@ -3,9 +3,9 @@
 
 #include "host/backend.hpp"
 #include "host/mesh/body.hpp"
-#include "host/spectrum/compare.hpp"
-#include "host/spectrum/error_estimate.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/compare.hpp"
+#include "host/mass/error_estimate.hpp"
+#include "host/mass/mass_moments.hpp"
 
 #include <cstdint>
 #include <span>

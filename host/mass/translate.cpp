@@ -1,4 +1,4 @@
-#include "host/spectrum/translate.hpp"
+#include "host/mass/translate.hpp"
 
 #include "host/mesh/geometry.hpp"
 #include "host/parallel.hpp"

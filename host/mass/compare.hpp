@@ -20,7 +20,7 @@ struct DegreeErrors {
 };
 
 /// Compares each degree with `estimate[l]`, the error to be expected of both together in the units of the coefficients
-/// (host/spectrum/error_estimate.hpp). Both sets must be of one lmax, origin and radius.
+/// (host/mass/error_estimate.hpp). Both sets must be of one lmax, origin and radius.
 DegreeErrors compare(const Multipoles& a, const Multipoles& b, std::span<const double> estimate);
 
 /// The same against coefficients in extended precision, real and imaginary parts interleaved.

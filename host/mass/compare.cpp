@@ -1,4 +1,4 @@
-#include "host/spectrum/compare.hpp"
+#include "host/mass/compare.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@
 // what the cut-off left out. A_l is far above |Q_l| where terms cancel: on hollow bodies, about far origins, in degrees that
 // a symmetry forbids. Determinants need no term, because they are computed to the last place (geometry/determinant.hpp), and with them the
 // mass: E_0 = 4 u |Q_0| + 2^-98 B_0, B_l the bound of plan::degree_bound(). Of several parts E_l^2 adds, before the parts
-// cancel. Moments about a far origin are moved there, and their errors with them (host/spectrum/translate.hpp).
+// cancel. Moments about a far origin are moved there, and their errors with them (host/mass/translate.hpp).
 #pragma once
 
 #include "host/moment_terms.hpp"

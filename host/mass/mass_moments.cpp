@@ -1,6 +1,6 @@
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 
-#include "host/spectrum/translate.hpp"
+#include "host/mass/translate.hpp"
 
 #include <optional>
 #include <utility>

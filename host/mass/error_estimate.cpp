@@ -1,4 +1,4 @@
-#include "host/spectrum/error_estimate.hpp"
+#include "host/mass/error_estimate.hpp"
 
 #include <fmt/format.h>
 
