@@ -1,5 +1,6 @@
 #include "host/report/drop_findings.hpp"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <cmath>

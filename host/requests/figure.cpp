@@ -106,7 +106,7 @@ plot::Canvas of_expansions(const Drawing& on, std::vector<std::string>& left_out
 // A ball of the body's volume on the left, the body on the right.
 plot::Canvas tipping(const Drawing& on) {
   using namespace physics;
-  const RigidBody cow = tip_body(on.body);
+  const RigidBody cow = solid_body(on.body);
   const Stance stance = stand(cow, {}), ball = stand(ball_like(cow, on.body.mass()), {.as_modelled = true});
   const Tipping of_cow = physics::tipping(stance, Side::right), of_ball = physics::tipping(ball, Side::right);
   const std::array shown = {figures::TippedBody{&ball, &of_ball, "spherical body"},
