@@ -20,9 +20,9 @@ cowgpu_component(libcowgpu_moments moments)
 target_link_libraries(libcowgpu_moments PUBLIC Eigen3::Eigen PRIVATE cowgpu_moments cowgpu_engine)
 set_target_properties(libcowgpu_moments PROPERTIES
   LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,cowgpu_moments,cowgpu_engine" OUTPUT_NAME cowgpu_moments)
-# The shared object stands before the archives, so that nothing of it is linked a second time.
+# Archives that cowgpu_host needs come after the shared object, so that nothing of it is linked a second time.
 cowgpu_component(libcowgpu cowgpu)
-target_link_libraries(libcowgpu PUBLIC libcowgpu_moments PRIVATE cowgpu_host)
+target_link_libraries(libcowgpu PRIVATE cowgpu_host PUBLIC libcowgpu_moments)
 set_target_properties(libcowgpu PROPERTIES LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,cowgpu_host" OUTPUT_NAME cowgpu)
 
 # Man page and completion, from the option table.

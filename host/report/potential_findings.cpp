@@ -176,7 +176,10 @@ void add_errors(const SeriesErrors& errors, Findings& found) {
              {}};
   for (const GoodFrom& g : errors.good_from) {
     std::vector<Value> row = {double(g.order)};
-    for (const auto& distance : g.distance) row.push_back(distance ? Value(*distance) : Value());
+    for (const auto& distance : g.distance) {
+      row.emplace_back();
+      if (distance) row.back() = *distance;
+    }
     good.rows.push_back(row);
   }
   found.tables = {std::move(table), std::move(good)};

@@ -52,8 +52,10 @@ Table shift_table(const TidesResult& t) {
   for (const auto& [outwards, normal, found] : t.shifts) {
     std::vector<Value> row = {Value(std::string(outwards > 0 ? "+A" : "-A")),
                               Value(std::string(normal > 0 ? "+C" : "-C"))};
-    for (int i = 0; i < 3; ++i) row.push_back(found.found ? Value(double(found.shift[i])) : Value());
-    row.push_back(found.found ? Value(double(found.shift.norm())) : Value());
+    if (found.found)
+      row.insert(row.end(), {double(found.shift[0]), double(found.shift[1]), double(found.shift[2]),
+                             double(found.shift.norm())});
+    row.resize(table.columns.size());
     table.rows.push_back(row);
   }
   return table;

@@ -18,8 +18,9 @@ struct DiffRequest {
   std::optional<double> metres;    ///< length of the unit of the one or both files that do not say it
 };
 
-/// The caller fills in `command`. Brings the second file's coefficients to kind and reference radius of the first's, and takes them apart. Throws what
-/// read_coefficient_set() and difference() throw; Error(bad_argument) for a unit that neither file needs.
+/// The caller fills in `command`. Brings the second file's coefficients to kind and reference radius of the first's,
+/// and takes them apart. Throws what read_coefficient_set() and difference() throw; Error(bad_argument) for a unit that
+/// neither file needs.
 DiffResult diff(const DiffRequest& request);
 
 } // namespace cowgpu

@@ -38,7 +38,8 @@ struct SynthesiseResult {
   TransformRun run;
 };
 
-/// The caller fills in `command`, `output` and the times of files. Throw what plan_transform() and the transform throw, and Error(file_format) where sums of the input overflow doubles.
+/// The caller fills in `command`, `output` and the times of files. Throw what plan_transform() and the transform throw,
+/// and Error(file_format) where sums of the input overflow doubles.
 AnalyseResult analyse(const AnalyseRequest& request, Backend& backend, Monitor& monitor);
 SynthesiseResult synthesise(const SynthesiseRequest& request, Backend& backend, Monitor& monitor);
 

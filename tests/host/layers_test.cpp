@@ -44,7 +44,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/reproduce", {"host", "host/io", "host/report", "host/paper"}},
     {"host/cli",
      {"host/backend", "host", "host/mesh", "host/io", "host/spectrum", "host/physics", "host/report", "host/plot",
-      "host/figures", "host/requests"}},
+      "host/requests"}},
     // What is installed as <cowgpu/...>.
     {"host/include/cowgpu", {"cowgpu", "host/backend", "host", "host/mass", "host/mesh", "host/requests"}},
 };
