@@ -105,7 +105,8 @@ BodyRequest body_request(const BodyOptions& options) {
   const bool si = request.units_stated();
   request.charge = options.charge;
   const double density = parse_density("--density", options.density, si, options.charge);
-  if (options.density_stated || (options.density_option && options.density_option->count() > 0)) request.density = density;
+  if (options.density_stated || (options.density_option && options.density_option->count() > 0))
+    request.density = density;
   for (const std::string& text : options.parts) {
     request.parts.push_back(parse_part(text));
     PartRequest& part = request.parts.back();
