@@ -10,9 +10,10 @@
 #include "host/map/quality.hpp"
 #include "host/map/stretch.hpp"
 #include "host/mesh/subdivide.hpp"
+#include "host/paper/recipe.hpp"
+#include "host/paper/surface_tables.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/expand_surface.hpp"
-#include "host/spectrum/paper_tables.hpp"
 
 #include "bench/command_line.hpp"
 
@@ -96,7 +97,7 @@ private:
     options.lmax = 3;
     options.closest_point = true;
     options.signed_dphi = false;
-    const SphereMap map = harmonic_map(surface_, HarmonicOptions::paper_recipe());
+    const SphereMap map = harmonic_map(surface_, paper::harmonic_map());
     say("\nthe paper's recipe\n");
     for (Path& path : paths_) {
       const auto misfits = paper_misfits(expand(path, map, options));

@@ -1,5 +1,4 @@
-// Verifies the verb `sample` against the exact reference and its paths against each other, then times it. How to read the
-// output stands in bench/README.md.
+// Verifies the verb `sample` against the exact reference and its paths against each other, then times it. Figures: bench/maps.md.
 #include "host/backend.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"

@@ -1,4 +1,4 @@
-// Quantities with units, as the command line takes them.
+// Units: those of a body or a file, and quantities with units as the command line takes them.
 #pragma once
 
 #include <string_view>
@@ -7,6 +7,14 @@ namespace cowgpu {
 
 /// What a quantity measures. Values are held in the SI unit: m, kg/m3, s, rad/s, kg, C/m3, N.
 enum class Dimension { length, density, time, angular_rate, mass, charge_density, force };
+
+/// The units that a body, or what a file holds, is in. Where they are `stated` its numbers are SI, and a number of the file was
+/// so many metres or kilograms; where not its numbers are in the file's own units, of which nothing is known.
+struct Units {
+  double metre = 1;    ///< metres that the file's unit of length is
+  double kilogram = 1; ///< kilograms that its unit of mass is: of a mesh its density times the cube of that
+  bool stated = false;
+};
 
 /// Seconds.
 inline constexpr double julian_year = 365.25 * 86400;

@@ -4,17 +4,26 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# The library: engine and host as one shared object. The program has them inside.
+# The library in two shared objects, which are its components: `moments` (meshes from arrays, bodies, moments), and `cowgpu`, all
+# else on top, which needs Cairo, netCDF, PNG, METIS. The program has both inside.
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/libcowgpu.cpp CONTENT "// Whole archives are all there is.\n")
-add_library(libcowgpu SHARED ${PROJECT_BINARY_DIR}/generated/libcowgpu.cpp)
-target_link_libraries(libcowgpu
-  PUBLIC Eigen3::Eigen
-  PRIVATE cowgpu_host cowgpu_engine)
-target_include_directories(libcowgpu INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/cowgpu>)
-target_compile_features(libcowgpu INTERFACE cxx_std_20)
-set_target_properties(libcowgpu PROPERTIES
-  LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,cowgpu_host,cowgpu_engine"
-  OUTPUT_NAME cowgpu EXPORT_NAME cowgpu VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+function(cowgpu_component target name)
+  add_library(${target} SHARED ${PROJECT_BINARY_DIR}/generated/libcowgpu.cpp)
+  target_include_directories(${target} INTERFACE
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>          # <cowgpu/cowgpu.hpp>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/cowgpu>)  # "host/backend.hpp", as they include each other
+  target_compile_features(${target} INTERFACE cxx_std_20)
+  target_link_options(${target} PRIVATE LINKER:--no-undefined)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+endfunction()
+cowgpu_component(libcowgpu_moments moments)
+target_link_libraries(libcowgpu_moments PUBLIC Eigen3::Eigen PRIVATE cowgpu_moments cowgpu_engine)
+set_target_properties(libcowgpu_moments PROPERTIES
+  LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,cowgpu_moments,cowgpu_engine" OUTPUT_NAME cowgpu_moments)
+# Archives that cowgpu_host needs come after the shared object, so that nothing of it is linked a second time.
+cowgpu_component(libcowgpu cowgpu)
+target_link_libraries(libcowgpu PRIVATE cowgpu_host PUBLIC libcowgpu_moments)
+set_target_properties(libcowgpu PROPERTIES LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,cowgpu_host" OUTPUT_NAME cowgpu)
 
 # Man page and completion, from the option table.
 add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/generated/cowgpu.1 ${PROJECT_BINARY_DIR}/generated/cowgpu.bash
@@ -35,12 +44,14 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/meshes ${PROJECT_SOURCE_DIR}/data/s
 install(FILES ${PROJECT_BINARY_DIR}/page/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/cowgpu/page
   COMPONENT program OPTIONAL)
 
-install(TARGETS libcowgpu EXPORT cowgpu-targets
+install(TARGETS libcowgpu libcowgpu_moments EXPORT cowgpu-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 # Headers of what a caller uses; those of single paths and of third libraries stay inside.
-foreach(folder "" geometry/ mesh/ map/ spectrum/ flow/ io/ physics/)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/include/cowgpu DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+foreach(folder "" geometry/ mesh/ mass/ map/ spectrum/ flow/ io/ physics/ plot/ report/ requests/)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${folder}*.hpp)
-  list(FILTER headers EXCLUDE REGEX "/(far_field|flush_denormals|netcdf|quarter_turn|result_json|tinygltf|version)\\.hpp$")
+  list(FILTER headers EXCLUDE REGEX
+    "/(counted|far_field|flush_denormals|gltf|gltf_document|json_parts|netcdf|page|quarter_turn|result_json|tinygltf|version)\\.hpp$")
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/${folder} COMPONENT development)
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # held by a class of theirs
@@ -50,6 +61,15 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/cowgpu-config.cmake CONTEN
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4)
 include(${CMAKE_CURRENT_LIST_DIR}/cowgpu-targets.cmake)
+# Components: moments, or cowgpu, which has all.
+foreach(component ${cowgpu_FIND_COMPONENTS})
+  if(TARGET cowgpu::${component})
+    set(cowgpu_${component}_FOUND TRUE)
+  elseif(cowgpu_FIND_REQUIRED_${component})
+    set(cowgpu_FOUND FALSE)
+    set(cowgpu_NOT_FOUND_MESSAGE "cowgpu has the components moments and cowgpu, and none that is called ${component}")
+  endif()
+endforeach()
 ]] @ONLY)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/generated/cowgpu-config-version.cmake
   COMPATIBILITY SameMinorVersion)
@@ -80,5 +100,5 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/triggers CONTENT "activate
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcowgpu-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libcowgpu${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION}), libeigen3-dev")
+  "libcowgpu${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION}), libeigen3-dev, nlohmann-json3-dev")
 include(CPack)

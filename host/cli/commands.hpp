@@ -90,9 +90,6 @@ OriginChoice parse_origin(const std::string& text);
 /// Adds --normalisation and --phase with their words; `of_what` goes on behind their names in the help: "of OUT".
 void add_convention_options(Command& command, std::string& normalisation, std::string& phase, const char* of_what);
 
-/// "orthonormal, with Condon-Shortley phase".
-std::string convention_text(Convention convention);
-
 /// The help text of a MESH argument.
 std::string mesh_help();
 

@@ -91,11 +91,6 @@ void add_convention_options(Command& command, std::string& normalisation, std::s
       ->check(one_of({"cs", "none"}));
 }
 
-std::string convention_text(Convention convention) {
-  return fmt::format("{}, {} Condon-Shortley phase", name(convention.normalisation),
-                     convention.phase == Phase::condon_shortley ? "with" : "without");
-}
-
 std::string mesh_help() {
   std::string text = "A file (";
   for (const auto& format : mesh_formats()) text += fmt::format("{}, ", format.name);

@@ -2,13 +2,9 @@
 
 #include "host/cli/quantities.hpp"
 #include "host/error.hpp"
-#include "host/report/json_parts.hpp"
 #include "host/requests/diff.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <cmath>
 
 namespace cowgpu::cli {
 namespace {
@@ -22,79 +18,6 @@ struct Options {
   bool json = false;
 };
 
-// Infinity has no place in JSON.
-nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json json_of(const FieldDifference& field) {
-  nlohmann::ordered_json degrees = nlohmann::ordered_json::array();
-  for (std::size_t l = 0; l < field.norm.size(); ++l)
-    degrees.push_back({{"l", l},
-                       {"norm", field.norm[l]},
-                       {"difference", field.difference[l]},
-                       {"relative", number_or_null(field.relative(l))},
-                       {"worst_m", field.worst_order[l]}});
-  return {{"name", field.name},
-          {"norm", field.total_norm},
-          {"difference", field.total},
-          {"relative", number_or_null(field.total_relative())},
-          {"worst", number_or_null(field.worst)},
-          {"worst_degree", field.worst_degree},
-          {"degrees", degrees}};
-}
-
-void write_json(const Options& options, const Common& common, const CoefficientDifference& result,
-                const std::vector<std::string>& notes) {
-  nlohmann::ordered_json fields = nlohmann::ordered_json::array();
-  for (const FieldDifference& field : result.fields) fields.push_back(json_of(field));
-  nlohmann::ordered_json all = {{"schema", "cowgpu.diff.v1"},
-                                {"program", program_json()},
-                                {"command", common.command},
-                                {"created", utc_now()},
-                                {"first", options.first},
-                                {"second", options.second},
-                                {"notes", notes},
-                                {"kind", name(result.kind)},
-                                {"normalisation", name(result.convention.normalisation)},
-                                {"phase", name(result.convention.phase)},
-                                {"reference_radius", nullptr},
-                                {"lmax", result.lmax},
-                                {"unlike", result.unlike},
-                                {"fields", fields},
-                                {"worst", number_or_null(result.worst())},
-                                {"tolerance", nullptr},
-                                {"passed", nullptr}};
-  if (result.reference_radius > 0) all["reference_radius"] = result.reference_radius;
-  if (options.tolerance) {
-    all["tolerance"] = *options.tolerance;
-    all["passed"] = result.worst() <= *options.tolerance;
-  }
-  write_stdout(json_text(all) + "\n");
-}
-
-void write_screen(const Options& options, const CoefficientDifference& result, const std::vector<std::string>& notes) {
-  write_stdout(fmt::format("A: {}\nB: {}\n", options.first, options.second));
-  for (const std::string& note : notes) write_stdout("note: " + note + "\n");
-  for (const std::string& sentence : result.unlike) write_stdout("unlike: " + sentence + "\n");
-  write_stdout(
-      fmt::format("compared as {}, {}{}, to degree {}\n", name(result.kind), convention_text(result.convention),
-                  result.reference_radius > 0 ? fmt::format(", R = {}", result.reference_radius) : "", result.lmax));
-  for (const FieldDifference& field : result.fields) {
-    write_stdout(fmt::format("\n{}: |A| {:.6e}, |A - B| {:.3e}, relative {:.3e}\n", field.name, field.total_norm,
-                             field.total, field.total_relative()));
-    write_stdout(
-        fmt::format("  {:>4}  {:>13}  {:>10}  {:>10}  {:>7}\n", "l", "|A_l|", "|A - B|", "relative", "worst m"));
-    for (std::size_t l = 0; l < field.norm.size(); ++l)
-      write_stdout(fmt::format("  {:>4}  {:>13.6e}  {:>10.3e}  {:>10.3e}  {:>7}\n", l, field.norm[l],
-                               field.difference[l], field.relative(l), field.worst_order[l]));
-  }
-  write_stdout(fmt::format("\nworst degree over the norms beside it: {:.3e}{}\n", result.worst(),
-                           !options.tolerance                     ? ""
-                           : result.worst() <= *options.tolerance ? ", within the tolerance"
-                                                                  : ", beyond the tolerance"));
-}
-
 void run(const Options& options, const Common& common) {
   DiffRequest request;
   request.first = options.first;
@@ -103,15 +26,18 @@ void run(const Options& options, const Common& common) {
   request.field = options.field;
   request.convention = {*normalisation_named(options.normalisation), *phase_named(options.phase)};
   request.metres = stated_metres(options.length_unit);
-  const auto [result, notes] = diff(request);
+  request.tolerance = options.tolerance;
+  DiffResult result = diff(request);
+  result.command = common.command;
   if (options.json)
-    write_json(options, common, result, notes);
+    write_json(result, write_stdout);
   else
-    write_screen(options, result, notes);
-  if (!options.tolerance || result.worst() <= *options.tolerance) return;
+    write_screen(result, write_stdout);
+  const double worst = result.difference.worst();
+  if (!options.tolerance || worst <= *options.tolerance) return;
   flush_stdout();
   throw Error(Fault::check_failed, fmt::format("{} and {} differ by {:.3g}, more than {:.3g}", options.first,
-                                               options.second, result.worst(), *options.tolerance));
+                                               options.second, worst, *options.tolerance));
 }
 
 } // namespace

@@ -43,20 +43,22 @@ FlowChoice flow_choice(const Options& options, const ExpansionChoice& choice) {
             "--time, --sheets, --refinements and --flow-grid are about the flow, and --of {} does not ask for it; add "
             "--of flow",
             options.of));
-  FlowChoice flow;
-  flow.time = parse_flow_time(options.time);
-  flow.sheets = options.sheets == "signed";
-  flow.refinements = options.refinements;
-  flow.grid_degree = options.flow_grid;
-  if (options.refinements_given && !flow.sheets && !choice.paper)
+  FlowChoice flow = choice.flow;
+  const double time = parse_flow_time(options.time);
+  const bool paper = options.recipe == "paper", sheets = options.sheets == "signed";
+  if (options.refinements_given && !sheets && !paper)
     throw Error(Fault::bad_argument, "--refinements is about --sheets signed and --recipe paper; level sets take "
                                      "--flow-grid instead");
-  if (options.grid_given && (flow.sheets || choice.paper))
+  if (options.grid_given && (sheets || paper))
     throw Error(Fault::bad_argument, "--flow-grid is about level sets; signed sheets and --recipe paper take "
                                      "--refinements instead");
-  if (choice.paper && (flow.time > 0 || flow.sheets))
+  if (paper && (time > 0 || sheets))
     throw Error(Fault::bad_argument, "--recipe paper sets the time, 0.2, and how folds are met: leave --time and "
                                      "--sheets out");
+  if (!paper) flow.time = time;
+  if (sheets) flow.meaning = FlowMeaning::sheets;
+  flow.refinements = options.refinements;
+  flow.grid_degree = options.flow_grid;
   return flow;
 }
 

@@ -3,6 +3,7 @@
 #include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 #include "host/number.hpp"
+#include "host/requests/paper_recipe.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,6 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
   ExpansionChoice choice;
   choice.map_file = map_file;
   choice.lmax = lmax;
-  choice.paper = recipe == "paper";
   std::set<MapMethod> wanted; // in the order of made_maps
   std::istringstream list(of + ",");
   for (std::string word; std::getline(list, word, ',');) {
@@ -35,6 +35,7 @@ ExpansionChoice parse_expansions(const std::string& of, const std::string& recip
                       of, word));
   }
   choice.maps.assign(wanted.begin(), wanted.end());
+  if (recipe == "paper") take_paper_recipe(choice);
   check_expansions(choice);
   return choice;
 }

@@ -1,20 +1,12 @@
+#include "host/requests/map.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/mend_options.hpp"
-
 #include "host/cli/expansion_words.hpp"
-#include "host/clock.hpp"
+#include "host/cli/mend_options.hpp"
+#include "host/requests/paper_recipe.hpp"
+
 #include "host/error.hpp"
 #include "host/io/map_file.hpp"
-#include "host/map/harmonic.hpp"
-#include "host/map/smooth.hpp"
-#include "host/map/stretch.hpp"
-#include "host/map/stretch_repeats.hpp"
-#include "host/mesh/half_edges.hpp"
-#include "host/mesh/winding_notes.hpp"
 #include "host/number.hpp"
-#include "host/report/json_parts.hpp"
-#include "host/report/map_report.hpp"
-#include "host/requests/expand_flow.hpp"
 
 #include <fmt/format.h>
 
@@ -72,7 +64,7 @@ Pole parse_pole(const std::string& text) {
 }
 
 HarmonicOptions harmonic_options(const Options& options) {
-  if (options.recipe == "paper") return HarmonicOptions::paper_recipe();
+  if (options.recipe == "paper") return paper::harmonic_map();
   HarmonicOptions harmonic;
   harmonic.weights = options.weights == "tutte"        ? EdgeWeights::tutte
                      : options.weights == "mean-value" ? EdgeWeights::mean_value
@@ -92,40 +84,37 @@ StretchOptions stretch_options(const Options& options) {
   return stretch;
 }
 
-SphereMap make_map(const Options& options, const ManifoldSurface& surface, Monitor& monitor) {
-  if (options.method == "harmonic") return harmonic_map(surface, harmonic_options(options), monitor);
-  if (options.method == "smooth") return smooth_map(surface, {}, monitor);
-  return stretch_map(surface, stretch_options(options), monitor);
+FlowMapOptions flow_options(const Options& options) {
+  FlowMapOptions flow;
+  if (const double time = parse_flow_time(options.time); time > 0) flow.time = time;
+  flow.origin = parse_origin(options.origin);
+  return flow;
 }
 
-// The mesh's vertices where the flow brings them, seen from the origin.
-SphereMap make_flow_map(const Options& options, const Common& common, const ManifoldSurface& surface, Monitor& monitor,
-                        FlowMapReport& report) {
-  const double given = parse_flow_time(options.time);
-  if (given > 0) check_flow_time(given, bounding_box(surface.vertices(), surface.faces()));
-  const auto backend = make_cpu_backend(common.threads);
-  report.origin = make_body(surface.closed(), parse_origin(options.origin), 1).origin;
-  report.star = find_star_shape_time(surface.closed().mesh(), report.origin, *backend, monitor);
-  report.time_choice = given > 0 ? "given" : "auto";
-  report.time = flow_time(given, report.star);
-  const FlowPoints ends = flow_vertices(surface, report.time, *backend, monitor, report.points);
-  return direction_map(ends.positions, report.origin);
+MapRequest request_of(const Options& options) {
+  MapRequest request;
+  if (options.method == "harmonic")
+    request.method = harmonic_options(options);
+  else if (options.method == "smooth")
+    request.method = SmoothOptions{};
+  else if (options.method == "flow")
+    request.method = flow_options(options);
+  else
+    request.method = stretch_options(options);
+  request.relabellings = options.relabellings;
+  request.lmax = options.lmax;
+  return request;
 }
 
 void run(const Options& options, const Common& common) {
-  if (options.method == "harmonic") harmonic_options(options); // words that mean nothing, before files are touched
-  if (options.method == "flow") {
-    parse_flow_time(options.time);
-    parse_origin(options.origin);
-  }
+  MapRequest request = request_of(options);
+  request.threads = common.threads;
   const MapFormat format = options.output.empty() ? MapFormat::ply : map_format(options.output);
   std::unique_ptr<AtomicFile> file; // before long work: what cannot be written should fail now
   if (!options.output.empty()) refuse_mesh_as_output(options.mesh, options.output);
   if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
 
-  const ManifoldSurface surface =
-      ManifoldSurface::from(ClosedSurface::from(load_mended(options.mesh, options.mending)));
-  require_sphere(surface);
+  request.mesh = load_mended(options.mesh, options.mending);
   // No Vulkan kernel makes maps: a device is opened only if it is asked for.
   if (common.device != "auto" && common.device != "cpu") {
     const auto backend = open_backend(common, nullptr);
@@ -133,55 +122,20 @@ void run(const Options& options, const Common& common) {
   }
 
   ConsoleMonitor monitor(common.style());
-  MapReport report;
-  report.command = common.command;
-  report.created = utc_now();
-  report.mesh = &surface.closed().mesh();
-  report.notes = body_notes(surface.closed(), monitor, common.threads);
-  auto start = Clock::now();
-  const SphereMap map = options.method == "flow"
-                            ? make_flow_map(options, common, surface, monitor, report.flow.emplace())
-                            : make_map(options, surface, monitor);
-  report.map = &map;
-  report.map_seconds = seconds_since(start);
+  MapResult result = make_map(std::move(request), monitor);
   monitor.clear();
-  check_stop(monitor);
-  start = Clock::now();
-  report.quality = judge(surface, map, options.lmax);
-  report.judge_seconds = seconds_since(start);
-  if (options.method == "stretch") {
-    report.stretch = measure_stretch(surface, map, options.lambda);
-    start = Clock::now();
-    report.repeats =
-        repeat_stretch_map(surface, map, stretch_options(options), options.relabellings, common.threads, monitor);
-    report.repeat_seconds = seconds_since(start);
-    monitor.clear();
-  }
-  const double degree = std::abs(report.quality.degree);
-  if (file && options.method == "flow" && !(std::abs(degree - 1) <= 1e-6))
-    throw Error(
-        Fault::map_failed,
-        fmt::format("the flow brings the vertices so far apart that the triangles between them cover the sphere "
-                    "{:.3g} times instead of once, and {} was not written: cut the mesh finer, or take a shorter "
-                    "--time",
-                    degree, options.output));
-  if (file && !(std::abs(degree - 1) <= 1e-6))
-    throw Error(
-        Fault::map_failed,
-        fmt::format("the map covers the sphere {:.3g} times: rounding has spoilt it, and {} was not written; leave "
-                    "out --disk-scale, or take --method stretch",
-                    degree, options.output));
   if (file) {
-    write_map(surface, map, format, *file);
+    check_map(result);
+    write_map(result.surface, result.map, format, *file);
     check_stop(monitor);
     file->commit();
-    report.output = options.output;
+    result.output = options.output;
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   }
   if (options.json)
-    write_json(report, write_stdout);
+    write_json(result, common.command, write_stdout);
   else
-    write_screen(report, write_stdout);
+    write_screen(result, write_stdout);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "host/cli/mend_options.hpp"
 
 #include "host/cli/commands.hpp"
-#include "host/io/mesh_source.hpp"
+#include "host/requests/load_body.hpp"
 
 namespace cowgpu::cli {
 
@@ -17,10 +17,8 @@ void add_mend_options(Command& command, Mending& mending) {
 }
 
 RawMesh load_mended(const std::string& name, const Mending& mending) {
-  RawMesh mesh = load_mesh(name);
   ConsoleMonitor monitor(ProgressStyle::none);
-  mend(mesh, mending, monitor);
-  return mesh;
+  return load_mended(name, mending, monitor);
 }
 
 } // namespace cowgpu::cli

@@ -15,7 +15,6 @@
 namespace cowgpu::cli {
 
 using physics::LongMat3;
-using physics::LongVec3;
 
 Vec3 parse_axis(const std::string& option, const std::string& text) {
   for (int c = 0; c < 3; ++c)
@@ -88,19 +87,6 @@ Eigen::Matrix3d parse_rotation(const std::string& option, const std::string& tex
   return rotation_matrix({turns[0], turns[1], turns[2]});
 }
 
-LongMat3 turn_about(const Vec3& axis, double degrees) {
-  const double turn = std::remainder(degrees, 360.0), rest = std::remainder(turn, 90.0);
-  const auto quarters = int(std::lround((turn - rest) / 90));
-  constexpr int sines[] = {0, 1, 0, -1};
-  const long double angle = rest / 180 * std::numbers::pi_v<long double>;
-  const long double s0 = sines[(quarters + 4) % 4], c0 = sines[(quarters + 5) % 4];
-  const long double s = s0 * std::cos(angle) + c0 * std::sin(angle), c = c0 * std::cos(angle) - s0 * std::sin(angle);
-  const LongVec3 a = axis.cast<long double>() / axis.cast<long double>().norm();
-  LongMat3 cross;
-  cross << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
-  return LongMat3::Identity() + s * cross + (1 - c) * cross * cross;
-}
-
 LongMat3 parse_turn(const std::string& option, const std::string& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos) {
@@ -114,7 +100,7 @@ LongMat3 parse_turn(const std::string& option, const std::string& text) {
   if (!degrees)
     throw Error(Fault::bad_argument,
                 fmt::format("{} {}: after the axis it takes an angle in degrees, as in x:30", option, text));
-  return turn_about(axis, *degrees);
+  return physics::turn_about(axis, *degrees);
 }
 
 physics::PointMass parse_point_mass(const std::string& option, const std::string& text) {

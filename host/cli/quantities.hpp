@@ -41,9 +41,6 @@ Eigen::Matrix3d parse_rotation(const std::string& option, const std::string& tex
 /// The same, or "AXIS:ANGLE" with parse_axis() and degrees, orthogonal in extended precision.
 physics::LongMat3 parse_turn(const std::string& option, const std::string& text);
 
-/// Rotation by an angle in degrees about an axis of length 1; multiples of 90 about x, y and z are exact.
-physics::LongMat3 turn_about(const Vec3& axis, double degrees);
-
 /// "earth", "moon", "sun", or a mass with its unit. Throws Error(bad_argument).
 physics::PointMass parse_point_mass(const std::string& option, const std::string& text);
 

@@ -1,23 +1,14 @@
+#include "host/requests/render.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/expansion_words.hpp"
 #include "host/cli/drawing.hpp"
+#include "host/cli/expansion_words.hpp"
 #include "host/cli/order_list.hpp"
-#include "host/figures/scene.hpp"
 
-#include "host/clock.hpp"
 #include "host/error.hpp"
-#include "host/io/mesh_source.hpp"
 #include "host/io/png.hpp"
-#include "host/io/surface_file.hpp"
-#include "host/mesh/topology.hpp"
-#include "host/mesh/triangle_surface.hpp"
-#include "host/mesh/winding_notes.hpp"
 #include "host/spectrum/expand_surface.hpp"
-#include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace cowgpu::cli {
 namespace {
@@ -35,73 +26,30 @@ struct Options {
   bool flat = false;
 };
 
-// Notes of a closed surface; of one that is not, those of its reading: it is shown as it is.
-std::vector<std::string> notes_on(const RawMesh& mesh, Monitor& monitor, unsigned threads) {
-  try {
-    return body_notes(ClosedSurface::from(mesh), monitor, threads);
-  } catch (const Error& error) {
-    if (error.fault() == Fault::interrupted) throw;
-    return mesh.notes;
-  }
-}
-
-TriangleSurface shown_mesh(const RawMesh& mesh) {
-  require_valid_indices(mesh);
-  TriangleSurface surface;
-  surface.vertices = mesh.vertices;
-  surface.faces = mesh.faces;
-  return surface;
-}
-
-// The bodies to show, one after the other; `orders` as typed.
-std::vector<TriangleSurface> bodies(const Options& options, std::vector<int> orders, Backend& backend, Monitor& monitor,
-                                    unsigned threads, std::vector<std::string>& notes) {
-  std::vector<TriangleSurface> found;
-  if (orders.empty() && !is_result_file(options.source.input)) {
-    const RawMesh mesh = load_mesh(options.source.input);
-    notes = notes_on(mesh, monitor, threads);
-    found.push_back(shown_mesh(mesh));
-    return found;
-  }
-  const int largest = orders.empty() ? 0 : std::max(*std::max_element(orders.begin(), orders.end()), 0);
-  const SurfaceSource source = load_surface(options.source, largest, backend, monitor);
-  notes = source.notes;
-  if (orders.empty()) orders = {source.expansion.coefficients.lmax};
-  for (const int order : orders) {
-    if (order == whole_mesh && !source.body)
-      throw Error(Fault::bad_argument, fmt::format("--order mesh: {} does not hold the mesh; name it with --mesh MESH",
-                                                   options.source.input));
-    if (order == whole_mesh) {
-      found.push_back(shown_mesh(source.body->surface.mesh()));
-      continue;
-    }
-    const int resolution = options.resolution > 0 ? options.resolution : default_resolution(order);
-    check_memory(rebuild_memory(order, resolution, backend), backend, "lower --order or --resolution");
-    found.push_back(reconstruct(source.expansion, parse_fields(options.fields), order,
-                                make_grid(GridKind::clenshaw_curtis, resolution), backend, monitor));
-  }
-  return found;
-}
-
-void run(const Options& given, const Common& common) {
-  Options options = given;
-  if (!options.output.ends_with(".png") || options.output.size() == 4)
-    throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .png", options.output));
-  std::vector<View> views;
-  for (const std::string& view : options.views) views.push_back(parse_view(view));
-  if (views.empty()) views.emplace_back();
-  const std::vector<int> orders = parse_orders(options.orders, "mesh");
-  const bool rebuilt = !orders.empty() || is_result_file(options.source.input);
-  if (!rebuilt && (!options.source.of.empty() || !options.fields.empty() || options.source.lmax >= 0 ||
-                   !options.source.mesh.empty() || options.resolution > 0))
+RenderRequest request_of(const Options& options, const Common& common) {
+  RenderRequest request;
+  request.source = options.source;
+  if (!options.views.empty()) request.views.clear();
+  for (const std::string& view : options.views) request.views.push_back(parse_view(view));
+  for (const int order : parse_orders(options.orders, "mesh"))
+    request.orders.push_back(order == whole_mesh ? std::nullopt : std::optional(order));
+  if (!request.rebuilds() && (!options.source.of.empty() || !options.fields.empty() || options.source.lmax >= 0 ||
+                              !options.source.mesh.empty() || options.resolution > 0))
     throw Error(Fault::bad_argument, "--of, --fields, --lmax, --mesh and --resolution are about bodies rebuilt at an "
                                      "order; add --order, or leave them out to see the mesh itself");
-  if (options.fields.empty()) options.fields = "xyz";
-  const int largest = orders.empty() ? 0 : std::max(*std::max_element(orders.begin(), orders.end()), 0);
-  if (rebuilt) check_surface_choice(options.source, largest);
-  if (options.resolution > 0 && options.resolution < largest)
-    throw Error(Fault::bad_argument, fmt::format("--resolution {} cannot show order {}; it must be at least the order",
-                                                 options.resolution, largest));
+  if (!options.fields.empty()) request.fields = parse_fields(options.fields);
+  request.resolution = options.resolution;
+  request.flat = options.flat;
+  request.panels = {options.width, options.height, options.columns, options.transparent};
+  request.threads = common.threads;
+  return request;
+}
+
+void run(const Options& options, const Common& common) {
+  if (!options.output.ends_with(".png") || options.output.size() == 4)
+    throw Error(Fault::bad_argument, fmt::format("-o {}: the name must end in .png", options.output));
+  const RenderRequest request = request_of(options, common);
+  check_render(request);
   for (const std::string& input : {options.source.input, options.source.mesh})
     refuse_mesh_as_output(input, options.output);
   AtomicFile file(options.output); // before long work: what cannot be written should fail now
@@ -109,30 +57,16 @@ void run(const Options& given, const Common& common) {
   auto backend = open_backend(common, nullptr);
   if (auto cpu = faster_drawing(*backend, common)) backend = std::move(cpu);
   ConsoleMonitor monitor(common.style());
-  std::vector<std::string> notes;
-  std::vector<TriangleSurface> shown = bodies(options, orders, *backend, monitor, common.threads, notes);
-  std::size_t triangles = 0;
-  for (TriangleSurface& body : shown) {
-    triangles += body.faces.size();
-    if (options.flat)
-      body.normals.clear();
-    else if (body.normals.empty())
-      body.normals = vertex_normals(body.vertices, body.faces);
-  }
-  const RenderScene scene =
-      figures::scene_of(shown, views, {options.width, options.height, options.columns, options.transparent});
-  const auto start = Clock::now();
-  const Image image = backend->render(scene, monitor);
-  const double seconds = seconds_since(start);
+  const RenderResult result = render(request, *backend, monitor);
   monitor.clear();
-  write_png(image, file);
+  write_png(result.image, file);
   check_stop(monitor);
   file.commit();
-  for (const std::string& note : notes)
+  for (const std::string& note : result.notes)
     if (!common.quiet) say(fmt::format("cowgpu: note: {}\n", note));
   if (!common.quiet)
     say(fmt::format("cowgpu: wrote {}: {} x {} pixels, {} triangles, rendered in {:.2f} s on {}\n", options.output,
-                    image.width, image.height, triangles, seconds,
+                    result.image.width, result.image.height, result.triangles, result.seconds,
                     backend->facts().type == "cpu" ? "the CPU" : backend->facts().name));
 }
 

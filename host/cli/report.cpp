@@ -1,91 +1,22 @@
+#include "host/requests/report.hpp"
 #include "host/cli/commands.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
-#include "host/io/foreign_file.hpp"
 #include "host/io/mesh_source.hpp"
-#include "host/io/result_json.hpp"
-#include "host/io/shown.hpp"
-#include "host/io/surface_file.hpp"
-#include "host/map/map_method.hpp"
-#include "host/report/page.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include <algorithm>
+#include <filesystem>
 
 namespace cowgpu::cli {
 namespace {
-
-using nlohmann::json;
-
-// Beyond, the page would take seconds to open: bodies to this order have 66,000 vertices.
-constexpr int largest_order = 128;
-constexpr int default_order = 32;
-constexpr std::size_t largest_mesh = 120000; // faces, 18 bytes each in the file
 
 struct Options {
   std::string result, mesh, output;
   std::vector<std::string> physics;
   int order = -1;
 };
-
-struct Source {
-  json document;
-  std::vector<SurfaceFile> surfaces;
-  RawMesh mesh; // empty where none is known
-};
-
-std::vector<SurfaceFile> read_surfaces(const std::string& path, const json& document) {
-  std::vector<SurfaceFile> files;
-  const json& expansions = result_json::member(path, document, "expansions");
-  if (!expansions.is_object())
-    throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' must be an object", path));
-  for (const MapMethod first : {MapMethod::stretch, MapMethod::harmonic, MapMethod::smooth, MapMethod::flow})
-    if (expansions.contains(name(first))) files.push_back(read_surface(path, std::string(name(first))));
-  for (const auto& [key, value] : expansions.items()) {
-    const auto known = [&key = key](const SurfaceFile& file) { return file.name == key; };
-    if (key != "mass" && std::none_of(files.begin(), files.end(), known)) files.push_back(read_surface(path, key));
-  }
-  return files;
-}
-
-/// A document of findings. It may be any JSON object that names its schema.
-nlohmann::ordered_json read_findings(const std::string& path) {
-  nlohmann::ordered_json document = result_json::parse_in_order(path, read_input_file(path));
-  const std::string schema = document.is_object() && document.contains("schema") && document["schema"].is_string()
-                                 ? document["schema"].get<std::string>()
-                                 : "";
-  if (schema.rfind("cowgpu.", 0) != 0)
-    throw Error(Fault::file_format, fmt::format("{}: this JSON is not a document of cowgpu; take what `cowgpu tensors "
-                                                "--json`, `radiate --json` and the like print",
-                                                path));
-  for (const char* member : {"input", "units", "notes"})
-    if (!document.contains(member))
-      throw Error(Fault::file_format,
-                  fmt::format("{}: a {} has no findings to show (no member '{}'); take what `cowgpu tensors --json`, "
-                              "`radiate --json` and the like print",
-                              path, shown(schema, 60), member));
-  if (!document["input"].is_object() || !document["units"].is_object() || !document["notes"].is_array())
-    throw Error(
-        Fault::file_format,
-        fmt::format("{}: in a document of findings 'input' and 'units' are objects and 'notes' is a list", path));
-  return document;
-}
-
-/// The distances of all orders from the mesh.
-std::vector<PageDistances> distances(const SurfaceExpansion& expansion, SurfaceFields fields, int largest,
-                                     const SphereGrid& grid, DistanceField& field, Backend& backend, Monitor& monitor) {
-  std::vector<PageDistances> orders;
-  for (int order = 0; order <= largest; ++order) {
-    check_stop(monitor);
-    monitor.progress("distances to the mesh", double(order) / (largest + 1));
-    const TriangleSurface surface = reconstruct(expansion, fields, order, grid, backend, silent_monitor());
-    orders.push_back(page_distances(grid, field.closest(surface.vertices, {false}, silent_monitor()).distance));
-  }
-  return orders;
-}
 
 std::string human(std::uintmax_t bytes) {
   return bytes < 1000000 ? fmt::format("{:.0f} kB", double(bytes) / 1e3)
@@ -103,61 +34,22 @@ void run(const Options& options, const Common& common) {
   const std::string page = read_page();
   AtomicFile file(options.output);
 
-  Source source{result_json::read(options.result), {}, {}};
-  source.surfaces = read_surfaces(options.result, source.document);
-  PageDocument document;
-  document.result = &source.document;
-  document.command = common.command;
-  for (const std::string& path : options.physics) document.physics.push_back(read_findings(path));
-
-  int most = 0;
-  for (const SurfaceFile& surface : source.surfaces) most = std::max(most, surface.expansion.coefficients.lmax);
-  if (options.order > most && !source.surfaces.empty())
-    throw Error(Fault::bad_argument, fmt::format("--order {}: {} holds degrees 0 to {}; expand to a higher lmax",
-                                                 options.order, options.result, most));
-  const int order = options.order >= 0 ? options.order : std::min(most, default_order);
-  document.grid = make_grid(GridKind::clenshaw_curtis, page_resolution(order));
-
+  ReportRequest request;
+  request.result = options.result;
+  if (!options.mesh.empty()) request.mesh = load_mesh(options.mesh);
+  request.physics = options.physics;
+  if (options.order >= 0) request.order = options.order;
+  request.command = common.command;
   std::string note;
   const auto backend = open_backend(common, &note);
   if (!note.empty() && !common.quiet) say(fmt::format("cowgpu: {}\n", note));
   ConsoleMonitor monitor(common.style());
-  std::unique_ptr<DistanceField> field;
-  if (!options.mesh.empty()) {
-    source.mesh = load_mesh(options.mesh);
-    place(source.mesh, result_json::placement(options.result, source.document));
-    field = backend->distance_field(source.mesh.vertices, source.mesh.faces);
-    document.mesh_name = source.mesh.name;
-    const auto hash = "/mesh/sha256"_json_pointer;
-    if (!source.document.contains(hash) || source.document.at(hash) != source.mesh.sha256) {
-      document.notes.push_back(fmt::format("{} has another SHA-256 than the mesh that was expanded", source.mesh.name));
-      say(fmt::format("cowgpu: warning: {}: distances are to another body\n", document.notes.back()));
-    }
-    if (source.mesh.faces.size() <= largest_mesh) {
-      document.vertices = source.mesh.vertices;
-      document.faces = source.mesh.faces;
-    } else
-      document.notes.push_back(
-          fmt::format("the mesh itself is not in this page: it has {} triangles, and pages carry {}",
-                      source.mesh.faces.size(), largest_mesh));
-  }
-  for (const SurfaceFile& file_ : source.surfaces) {
-    PageSurface surface;
-    surface.name = file_.name;
-    surface.expansion = &file_.expansion;
-    surface.order = std::min(order, file_.expansion.coefficients.lmax);
-    for (const SurfaceFields fields : {SurfaceFields::xyz, SurfaceFields::f})
-      if (field && (fields == SurfaceFields::xyz || file_.expansion.signed_dphi))
-        surface.distances[std::size_t(fields)] =
-            distances(file_.expansion, fields, surface.order, document.grid, *field, *backend, monitor);
-    document.surfaces.push_back(std::move(surface));
-  }
-  if (document.surfaces.empty())
-    document.notes.push_back("the result has no expansion of the surface, so no body is rebuilt here; "
-                             "`cowgpu expand MESH --of mass,stretch -o FILE.json` makes one");
-  write_page(page, document, file);
-  file.commit();
+  const auto report = make_report(std::move(request), *backend, monitor);
   monitor.clear();
+  if (!report->warning.empty())
+    say(fmt::format("cowgpu: warning: {}: distances are to another body\n", report->warning));
+  write_page(page, report->document, file);
+  file.commit();
   if (!common.quiet) {
     std::error_code failed;
     const auto bytes = std::filesystem::file_size(options.output, failed);
@@ -186,8 +78,8 @@ void add_report(Command& app, Common& common) {
       ->allow_extra_args(false);
   command
       ->add_option("--order", options->order,
-                   fmt::format("The largest order of the body ({} or the expansion's)", default_order))
-      ->check(in_range(0, largest_order))
+                   fmt::format("The largest order of the body ({} or the expansion's)", usual_report_order))
+      ->check(in_range(0, largest_report_order))
       ->type_name("L");
   command->add_option("-o,--output", options->output, "The page, FILE.html")
       ->type_name("FILE")

@@ -2,13 +2,9 @@
 
 #include "host/error.hpp"
 #include "host/io/grid_file.hpp"
-#include "host/report/json_parts.hpp"
-#include "host/report/result.hpp"
 #include "host/requests/roundtrip.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-#include <sys/resource.h>
 
 namespace cowgpu::cli {
 namespace {
@@ -23,101 +19,22 @@ struct Options {
   bool dry_run = false;
 };
 
-std::uint64_t peak_resident() {
-  struct rusage usage {};
-  getrusage(RUSAGE_SELF, &usage);
-  return std::uint64_t(usage.ru_maxrss) * 1024;
-}
-
-nlohmann::ordered_json stage_json(const TransformReport& report) {
-  nlohmann::ordered_json kernels = nlohmann::ordered_json::array();
-  for (const KernelTime& k : report.kernels)
-    kernels.push_back({{"kernel", k.kernel}, {"dispatches", k.dispatches}, {"seconds", k.seconds}});
-  return {{"legendre_seconds", report.legendre_seconds},
-          {"fourier_seconds", report.fourier_seconds},
-          {"legendre_flops", report.legendre_flops},
-          {"fourier_flops", report.fourier_flops},
-          {"kernels", kernels}};
-}
-
-void write_json(const Options& options, const Common& common, const RoundtripResult& o, const std::string& note) {
-  nlohmann::ordered_json notes = nlohmann::ordered_json::array();
-  if (!note.empty()) notes.push_back(note);
-  const nlohmann::ordered_json all = {
-      {"schema", "cowgpu.roundtrip.v1"},
-      {"program", program_json()},
-      {"command", common.command},
-      {"created", utc_now()},
-      {"device", device_json(o.device)},
-      {"notes", notes},
-      {"grid", {{"kind", name(o.grid.kind)}, {"rings", o.grid.rings}, {"ring_length", o.grid.ring_length}}},
-      {"lmax", options.lmax},
-      {"fields", options.fields},
-      {"seed", options.seed},
-      {"runs", options.runs},
-      {"max_error", o.error.max},
-      {"rms_error", o.error.rms},
-      {"bound", o.bound},
-      {"passed", o.passed()},
-      {"setup_seconds", o.setup_seconds},
-      {"synthesis_seconds", o.synthesis.seconds},
-      {"analysis_seconds", o.analysis.seconds},
-      {"synthesis", stage_json(o.synthesis)},
-      {"analysis", stage_json(o.analysis)},
-      {"memory",
-       {{"host_bytes", o.memory.host}, {"device_bytes", o.memory.device}, {"peak_resident_bytes", peak_resident()}}}};
-  write_stdout(json_text(all) + "\n");
-}
-
-std::string memory_text(const MemoryNeed& need) {
-  return fmt::format("at most {} MiB on the host and {} MiB on the device", (need.host >> 20) + 1,
-                     (need.device + (1 << 20) - 1) >> 20);
-}
-
-void write_head(const Options& options, const RoundtripResult& o, const std::string& note) {
-  write_stdout(fmt::format("round trip: {} of random coefficients to degree {} (uniform in [-0.5, 0.5], seed {})\n",
-                           options.fields == 1 ? "1 field" : fmt::format("{} fields", options.fields), options.lmax,
-                           options.seed));
-  write_stdout(fmt::format("grid: {}, {} rings of {} points\n", name(o.grid.kind), o.grid.rings, o.grid.ring_length));
-  if (!note.empty()) write_stdout("note: " + note + "\n");
-  write_stdout("device: " + device_line(o.device) + "\n");
-}
-
-void write_text(const Options& options, const RoundtripResult& o, const std::string& note) {
-  write_head(options, o, note);
-  write_stdout(fmt::format("  {:<18} {:.2e}  largest error over largest coefficient (bound {:.1e}: {})\n", "max_error",
-                           o.error.max, o.bound, o.passed() ? "passed" : "FAILED"));
-  write_stdout(fmt::format("  {:<18} {:.2e}  root mean square, relative\n", "rms_error", o.error.rms));
-  const auto seconds = [](const char* what, double value, const char* remark) {
-    write_stdout(fmt::format("  {:<18} {:.6f} s{}\n", what, value, remark));
-  };
-  seconds("set-up", o.setup_seconds, "  nodes, weights, recurrences");
-  seconds("synthesis", o.synthesis.seconds,
-          options.runs == 1 ? "  after one to warm up" : "  median after one to warm up");
-  seconds("analysis", o.analysis.seconds, "");
-  write_stdout(
-      fmt::format("  {:<18} {}; peak of the process {} MiB\n", "memory", memory_text(o.memory), peak_resident() >> 20));
-}
-
 void run(const Options& options, const Common& common) {
   std::string note;
   const auto backend = open_backend(common, &note);
   if (!note.empty() && !common.quiet) say(fmt::format("cowgpu: {}\n", note));
   const RoundtripRequest request = {options.lmax, options.fields, *grid_kind_named(options.grid), options.seed,
                                     options.runs};
-  if (options.dry_run) {
-    const RoundtripResult plan = plan_roundtrip(request, *backend);
-    write_head(options, plan, note);
-    write_stdout("memory: " + memory_text(plan.memory) + "\n");
-    return;
-  }
   ConsoleMonitor monitor(common.style());
-  const RoundtripResult result = roundtrip(request, *backend, monitor);
+  RoundtripResult result = options.dry_run ? plan_roundtrip(request, *backend) : roundtrip(request, *backend, monitor);
   monitor.clear();
+  result.command = common.command;
+  if (!note.empty()) result.notes.push_back(note);
+  if (options.dry_run) return write_plan(result, write_stdout);
   if (options.json)
-    write_json(options, common, result, note);
+    write_json(result, write_stdout);
   else
-    write_text(options, result, note);
+    write_screen(result, write_stdout);
   if (result.passed()) return;
   flush_stdout();
   throw Error(Fault::check_failed,

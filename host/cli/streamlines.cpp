@@ -1,35 +1,26 @@
+#include "host/requests/streamlines.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/mend_options.hpp"
-#include "host/requests/expand_flow.hpp"
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/streamline_file.hpp"
-#include "host/mesh/closed_surface.hpp"
-#include "host/mesh/geometry.hpp"
-#include "host/mesh/winding_notes.hpp"
-#include "host/report/flow_result.hpp"
 #include "host/report/json_parts.hpp"
-#include "host/report/result.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 namespace cowgpu::cli {
 namespace {
 
-constexpr std::size_t default_count = 200, most_lines = 1'000'000;
-
 struct Options {
   std::string mesh = "builtin:cow", plane = "yz", origin = "0,0,0", output;
   Mending mending;
-  std::size_t count = default_count;
-  double time = 0, spacing = 0, within = -1, tolerance = FlowOptions{}.tolerance;
+  std::size_t count = StreamlinesRequest{}.count;
+  std::optional<double> time, space, within;
+  double tolerance = StreamlinesRequest{}.tolerance;
   bool json = false;
 };
 
@@ -44,114 +35,56 @@ Layout layout_of(const std::string& output) {
               fmt::format("-o {}: streamlines go to FILE.csv, FILE.json, or - for CSV on standard output", output));
 }
 
-StreamlineStarts starts_of(const Options& options, const RawMesh& mesh, const StreamlineTable& table) {
-  if (options.within >= 0) {
-    StreamlineStarts starts = starts_near(table.plane, options.within, mesh.vertices, mesh.faces);
-    if (starts.places.empty())
-      throw Error(
-          Fault::mesh_empty,
-          fmt::format("no vertex of {} lies within {} of the plane {}: widen --vertices, or start on the cut with "
-                      "--count",
-                      mesh.name, options.within, options.plane));
-    return starts;
-  }
-  double length = 0;
-  for (const CutLoop& loop : table.cut) length += loop.length;
-  const double count =
-      options.spacing > 0 ? std::max(1.0, std::round(length / options.spacing)) : double(options.count);
-  if (count > double(most_lines))
-    throw Error(Fault::bad_argument,
-                fmt::format("--spacing {} asks for {:.3g} lines along a cut of length {:.6g}: at most {} "
-                            "are drawn",
-                            options.spacing, count, length, most_lines));
-  return starts_along(table.cut, std::size_t(count), mesh.vertices, mesh.faces);
-}
-
 void run(const Options& options, const Common& common) {
   const Layout layout = layout_of(options.output);
   const bool to_stdout = options.output == "-";
   if (to_stdout && options.json)
     throw Error(Fault::bad_argument, "--json and -o - both write to the standard output; name a file");
-  StreamlineTable table;
-  table.plane = parse_plane(options.plane);
+  StreamlinesRequest request;
+  request.plane = parse_plane(options.plane);
   const auto origin = parse_point(options.origin);
   if (!origin)
     throw Error(Fault::bad_argument,
                 fmt::format("--origin {}: it must be three numbers X,Y,Z in mesh coordinates", options.origin));
-  table.origin = *origin;
+  request.origin = *origin;
+  request.time = options.time;
+  request.count = options.count;
+  request.space = options.space;
+  request.within = options.within;
+  request.tolerance = options.tolerance;
+  request.threads = common.threads;
   std::unique_ptr<AtomicFile> file;
   if (!to_stdout) refuse_mesh_as_output(options.mesh, options.output);
   if (layout != Layout::none && !to_stdout) file = std::make_unique<AtomicFile>(options.output);
 
-  auto start = Clock::now();
-  const ClosedSurface surface = ClosedSurface::from(load_mended(options.mesh, options.mending));
-  const RawMesh& mesh = surface.mesh();
+  const auto start = Clock::now();
+  request.mesh = load_mended(options.mesh, options.mending);
+  const double load_seconds = seconds_since(start);
   ConsoleMonitor monitor(common.style());
-  std::vector<std::string> notes = body_notes(surface, monitor, common.threads);
-  table.mesh = mesh.name;
-  table.sha256 = mesh.sha256;
-  const Box box = bounding_box(surface);
-  if (options.time > 0) check_flow_time(options.time, box);
-  table.time = options.time > 0 ? options.time : (box.max - box.min).norm();
-  table.tolerance = options.tolerance;
-  table.cut = cut_by_plane(mesh.vertices, mesh.faces, table.plane);
-  if (table.cut.empty() && options.within < 0)
-    throw Error(Fault::mesh_empty,
-                fmt::format("the plane {} misses {}, whose box goes from ({:.6g}, {:.6g}, {:.6g}) to "
-                            "({:.6g}, {:.6g}, {:.6g}): choose another --plane",
-                            options.plane, mesh.name, box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(),
-                            box.max.z()));
-  table.starts = starts_of(options, mesh, table);
-  const double read_seconds = seconds_since(start);
-
-  start = Clock::now();
   std::string note;
   const auto backend = open_backend(common, &note);
-  if (!note.empty()) notes.push_back(note);
-  const auto flow = backend->distance_flow(mesh.vertices, mesh.faces);
-  FlowOptions how;
-  how.time = table.time;
-  how.tolerance = options.tolerance;
-  table.found = streamlines(mesh.vertices, mesh.faces, table.starts, table.origin, how, *flow, *backend, monitor);
+  StreamlinesResult result = find_streamlines(std::move(request), *backend, monitor);
   monitor.clear();
-  const double flow_seconds = seconds_since(start);
+  if (!note.empty()) result.notes.push_back(note);
+  result.read_seconds += load_seconds;
 
   if (to_stdout) {
-    write_streamlines_csv(table, write_stdout);
+    write_streamlines_csv(result.table, write_stdout);
     return;
   }
-  const auto document = [&] {
-    nlohmann::ordered_json all = {{"schema", "cowgpu.streamlines.v1"},
-                                  {"program", program_json()},
-                                  {"command", common.command},
-                                  {"created", utc_now()}};
-    all.update(streamlines_json(table));
-    all["device"] = device_json(backend->facts());
-    all["notes"] = notes;
-    all["timings"] = {{"read", read_seconds}, {"flow", flow_seconds}};
-    return json_text(all) + "\n";
-  };
   if (file) {
     if (layout == Layout::json)
-      file->write(document());
+      file->write(json_text(streamlines_json(result, common.command)) + "\n");
     else
-      write_streamlines_csv(table, [&](std::string_view text) { file->write(text); });
+      write_streamlines_csv(result.table, [&](std::string_view text) { file->write(text); });
     check_stop(monitor);
     file->commit();
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   }
-  if (options.json) {
-    write_stdout(document());
-    return;
-  }
-  write_stdout(mesh_line(mesh) + "\n");
-  for (const std::string& sentence : notes) write_stdout("note: " + sentence + "\n");
-  double length = 0;
-  for (const CutLoop& loop : table.cut) length += loop.length;
-  write_stdout(fmt::format("cut: plane {}, {} closed line{} of length {:.9g}\n", options.plane, table.cut.size(),
-                           table.cut.size() == 1 ? "" : "s", length));
-  write_stdout(fmt::format("streamlines: to t = {:.6g}; {}\n", table.time, flow_points_text(table.found.report)));
-  write_stdout(fmt::format("time: read {:.3f} s, flow {:.3f} s\n", read_seconds, flow_seconds));
+  if (options.json)
+    write_stdout(json_text(streamlines_json(result, common.command)) + "\n");
+  else
+    write_streamlines(result, options.plane, write_stdout);
 }
 
 } // namespace
@@ -172,14 +105,13 @@ void add_streamlines(Command& app, Common& common) {
       ->check(positive_number())
       ->type_name("T");
   auto* count = command->add_option("--count", options->count, "Lines, evenly spaced along the cut")
-                    ->check(in_range(std::size_t(1), most_lines))
+                    ->check(in_range(std::size_t(1), most_streamlines))
                     ->type_name("N")
                     ->capture_default_str();
-  auto* spacing =
-      command->add_option("--spacing", options->spacing, "How far apart the lines start, instead of --count")
-          ->check(positive_number())
-          ->type_name("S")
-          ->excludes(count);
+  auto* spacing = command->add_option("--spacing", options->space, "How far apart the lines start, instead of --count")
+                      ->check(positive_number())
+                      ->type_name("S")
+                      ->excludes(count);
   command
       ->add_option("--vertices", options->within,
                    "Start at the mesh's vertices, not on the cut: at those no farther than W from the plane")

@@ -2,12 +2,11 @@
 
 #include "host/cli/quantities.hpp"
 #include "host/clock.hpp"
-#include "host/report/json_parts.hpp"
-#include "host/report/result.hpp"
 #include "host/requests/transform.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include <utility>
 
 namespace cowgpu::cli {
 namespace {
@@ -23,70 +22,6 @@ struct Options {
 
 constexpr std::uint64_t large_csv = std::uint64_t(50) << 20;
 constexpr std::uint64_t csv_number = 20; // bytes, about
-
-// Seconds beside those of the transform.
-struct FileTimes {
-  double read = 0, write = 0;
-};
-
-std::string grid_text(const SphereGrid& grid) {
-  return fmt::format("{}, {} rings of {} points, exact to degree {}", name(grid.kind), grid.rings, grid.ring_length,
-                     grid.lmax);
-}
-
-std::string fields_text(std::size_t n) {
-  return n == 1 ? "1 field" : fmt::format("{} fields", n);
-}
-
-void write_plan(const TransformPlan& plan, const DeviceFacts& device) {
-  write_stdout(fmt::format("plan: {} of {} to degree {}, {} coefficients each\n", plan.direction,
-                           fields_text(plan.names.size()), plan.lmax, SphereCoefficients::count(plan.lmax)));
-  write_stdout("grid: " + grid_text(plan.grid) + "\n");
-  write_stdout("device: " + device_line(device) + "\n");
-  write_stdout(fmt::format("memory: at most {} MiB on the host and {} MiB on the device, files and all\n",
-                           (plan.memory.host >> 20) + 1, (plan.memory.device + (1 << 20) - 1) >> 20));
-}
-
-void write_json(const Options& options, const Common& common, const TransformRun& run, const FileTimes& times) {
-  const TransformPlan& plan = run.plan;
-  const nlohmann::ordered_json all = {{"schema", "cowgpu.transform.v1"},
-                                      {"program", program_json()},
-                                      {"command", common.command},
-                                      {"created", utc_now()},
-                                      {"direction", plan.direction},
-                                      {"input", options.input},
-                                      {"output", options.output},
-                                      {"grid",
-                                       {{"kind", name(plan.grid.kind)},
-                                        {"rings", plan.grid.rings},
-                                        {"ring_length", plan.grid.ring_length},
-                                        {"lmax", plan.grid.lmax}}},
-                                      {"lmax", plan.lmax},
-                                      {"fields", plan.names},
-                                      {"normalisation", name(plan.convention.normalisation)},
-                                      {"phase", name(plan.convention.phase)},
-                                      {"device", device_json(run.device)},
-                                      {"notes", plan.notes},
-                                      {"timings",
-                                       {{"read", times.read},
-                                        {"setup", run.setup_seconds},
-                                        {"transform", run.report.seconds},
-                                        {"write", times.write}}}};
-  write_stdout(json_text(all) + "\n");
-}
-
-void write_screen(const TransformRun& run, const FileTimes& times) {
-  const TransformPlan& plan = run.plan;
-  for (const std::string& note : plan.notes) write_stdout("note: " + note + "\n");
-  write_stdout(fmt::format("computed: {} of {} to degree {}, {} coefficients each, in {:.3f} s\n", plan.direction,
-                           fields_text(plan.names.size()), plan.lmax, SphereCoefficients::count(plan.lmax),
-                           run.report.seconds));
-  write_stdout("grid: " + grid_text(plan.grid) + "\n");
-  write_stdout(fmt::format("coefficients in the file: {}\n", convention_text(plan.convention)));
-  write_stdout("device: " + device_line(run.device) + "\n");
-  write_stdout(fmt::format("time: read {:.3f} s, set-up {:.3f} s, transform {:.3f} s, write {:.3f} s\n", times.read,
-                           run.setup_seconds, run.report.seconds, times.write));
-}
 
 // Opens the device; why it is the CPU goes to `notes`.
 std::unique_ptr<Backend> open_noted(const Common& common, std::vector<std::string>& notes) {
@@ -112,23 +47,27 @@ std::optional<GridKind> wanted_kind(const Options& options) {
 
 // What a direction does between reading its input and saying what was done: the transform, and its file.
 template <class Request, class Transform, class Write>
-void run(const Options& options, const Common& common, AtomicFile* file, Request& request, FileTimes times,
-         const Transform& transform, const Write& write) {
+void run(const Options& options, const Common& common, Request request, double read_seconds, const Transform& transform,
+         AtomicFile* file, const Write& write) {
   const auto backend = open_noted(common, request.input.notes);
-  if (options.dry_run) return write_plan(plan_transform(request, *backend), backend->facts());
+  if (options.dry_run) return write_plan(plan_transform(request, *backend), write_stdout);
   ConsoleMonitor monitor(common.style());
-  const auto result = transform(request, *backend, monitor);
+  auto result = transform(request, *backend, monitor);
   monitor.clear();
+  TransformRun& run = result.run;
   const auto start = Clock::now();
   write(result, *file);
   check_stop(ConsoleMonitor(ProgressStyle::none));
   file->commit();
-  times.write = seconds_since(start);
+  run.write_seconds = seconds_since(start);
+  run.read_seconds = read_seconds;
+  run.command = common.command;
+  run.output = options.output;
   if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   if (options.json)
-    write_json(options, common, result.run, times);
+    write_json(run, write_stdout);
   else
-    write_screen(result.run, times);
+    write_screen(run, write_stdout);
 }
 
 void run_analysis(const Options& options, const Common& common) {
@@ -138,7 +77,7 @@ void run_analysis(const Options& options, const Common& common) {
                          options.input,
                          options.lmax,
                          {*normalisation_named(options.normalisation), *phase_named(options.phase)}};
-  run(options, common, file.get(), request, {seconds_since(start), 0}, analyse,
+  run(options, common, std::move(request), seconds_since(start), analyse, file.get(),
       [&](const AnalyseResult& result, AtomicFile& to) {
         write_coefficients(result.coefficients, file_format(options.output), to);
       });
@@ -149,7 +88,7 @@ void run_synthesis(const Options& options, const Common& common) {
   const auto start = Clock::now();
   SynthesiseRequest request{read_coefficients(options.input, stated_metres(options.length_unit)), options.input,
                             options.lmax, *wanted_kind(options)};
-  run(options, common, file.get(), request, {seconds_since(start), 0}, synthesise,
+  run(options, common, std::move(request), seconds_since(start), synthesise, file.get(),
       [&](const SynthesiseResult& result, AtomicFile& to) {
         const FileFormat format = file_format(options.output);
         const std::uint64_t bytes = csv_number * std::uint64_t(result.grid.fields() + 2) * result.grid.grid.points();

@@ -1,9 +1,9 @@
-#include "host/cli/body_options.hpp"
 #include "host/cli/commands.hpp"
 
 #include "host/error.hpp"
 #include "host/report/result.hpp"
-#include "host/spectrum/validate.hpp"
+#include "host/requests/load_body.hpp"
+#include "host/requests/validate.hpp"
 
 #include <fmt/format.h>
 
@@ -13,18 +13,21 @@ namespace cowgpu::cli {
 namespace {
 
 struct Options {
-  BodyOptions body;
+  std::string mesh = "builtin:cow@1", origin = "com";
   int lmax = 64;
   double cut_off = default_cut_off;
 };
 
 void run(const Options& options, Common& common) {
   std::vector<std::string> notes;
-  const Body body = load_body(options.body, notes);
+  BodyRequest request;
+  request.mesh = options.mesh;
+  request.origin = parse_origin(options.origin);
+  ConsoleMonitor monitor(common.style());
+  const Body body = load_body(request, notes, monitor);
   std::string note;
   const auto backend = open_backend(common, &note);
   const bool gpu = backend->facts().type != "cpu";
-  ConsoleMonitor monitor(common.style());
   const Validation validation =
       validate_moments(body, options.lmax, options.cut_off, gpu ? backend.get() : nullptr, common.threads, monitor);
   monitor.clear();
@@ -62,11 +65,10 @@ void run(const Options& options, Common& common) {
 
 void add_validate(Command& app, Common& common) {
   const auto options = std::make_shared<Options>();
-  options->body.mesh = "builtin:cow@1";
   Command* command = app.add_subcommand(
       "validate", "Compute by every path and by a slow reference, and compare; exit 1 if anything is out of bounds");
-  command->add_option("mesh", options->body.mesh, mesh_help())->type_name("MESH")->capture_default_str();
-  command->add_option("--origin", options->body.origin, "Origin, as in expand: com (centre of mass), mesh, or X,Y,Z")
+  command->add_option("mesh", options->mesh, mesh_help())->type_name("MESH")->capture_default_str();
+  command->add_option("--origin", options->origin, "Origin, as in expand: com (centre of mass), mesh, or X,Y,Z")
       ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Largest degree, 0 to 4096")
       ->check(in_range(0, largest_degree))

@@ -44,7 +44,7 @@ public:
     const physics::Tipping& t = *shown_.tipping;
     const double ground = place(Vec3(0, shown_.stance->contact.ground, 0)).y;
     canvas.line(std::vector<plot::Point>{{left_ + 16, ground}, {left_ + panel - 16, ground}}, {plot::black, 1.4});
-    const plot::Point p = place(t.pivot), b = place(shown_.stance->body.barycentre), top = place(t.point);
+    const plot::Point p = place(t.pivot), b = place(shown_.stance->body.centre), top = place(t.point);
     canvas.line(std::vector<plot::Point>{p, top}, {plot::black, 1, plot::Dash::dashed});
     const double arrow = 0.24 * panel;
     const plot::Point push = {top.x - arrow * t.direction.z(), top.y - arrow * t.direction.y()};
@@ -86,7 +86,7 @@ private:
 plot::Canvas tipping_figure(std::span<const TippedBody> bodies, Backend& backend, Monitor& monitor) {
   plot::Canvas canvas(plot::PictureFormat::png, double(bodies.size()) * panel, title_height + panel + foot, pixels);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const physics::TipBody& body = bodies[i].stance->body;
+    const physics::RigidBody& body = bodies[i].stance->body;
     const std::vector<Vec3> normals = vertex_normals(body.vertices, body.faces);
     const Panel shown(bodies[i], double(i) * panel);
     RenderScene scene;

@@ -19,7 +19,6 @@
 namespace cowgpu {
 namespace {
 
-constexpr double paper_step = 0.05;
 constexpr double suture_threshold = 0.04; // diagonals
 // Of the grids that are compared: edges along one are not along another.
 constexpr std::array turns = {EulerAngles{0.6, 1.1, 2.3}, EulerAngles{2.7, 0.7, 1.9}, EulerAngles{1.7, 2.0, 0.4}};
@@ -145,9 +144,10 @@ SphereMap direction_map(std::span<const Vec3> positions, const Vec3& origin) {
   return map;
 }
 
-SphereMap paper_flow_map(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor, double time) {
+SphereMap stepped_flow_map(const RawMesh& mesh, const Vec3& origin, double time, double step, Backend& backend,
+                           Monitor& monitor) {
   const auto field = backend.distance_field(mesh.vertices, mesh.faces);
-  const int steps = std::max(1, int(std::lround(time / paper_step)));
+  const int steps = std::max(1, int(std::lround(time / step)));
   const auto ends =
       flow_fixed_steps(*field, mesh.vertices, vertex_normals(mesh.vertices, mesh.faces), time, steps, monitor);
   SphereMap map = direction_map(ends, origin);

@@ -21,10 +21,10 @@ SphereMap direction_map(std::span<const Vec3> positions, const Vec3& origin);
 /// solid angle of its normal cone, over sqrt(4 pi). Exact but for rounding. Throws Error(bad_argument) for vertices in one plane.
 double monopole_at_large_times(std::span<const Vec3> vertices, const Vec3& origin);
 
-/// The paper's recipe: the mesh's vertices along their normals for `time` in steps of 0.05 (host/flow/fixed_steps.hpp), seen
-/// from the origin. Expand with ExpandSurfaceOptions::closest_point and without signed_dphi.
-SphereMap paper_flow_map(const RawMesh& mesh, const Vec3& origin, Backend& backend, Monitor& monitor,
-                         double time = 0.2);
+/// The mesh's vertices along their normals for `time` in steps of about `step` (host/flow/fixed_steps.hpp), seen from the
+/// origin. Expand with ExpandSurfaceOptions::closest_point and without signed_dphi.
+SphereMap stepped_flow_map(const RawMesh& mesh, const Vec3& origin, double time, double step, Backend& backend,
+                           Monitor& monitor);
 
 /// Where the level set's map jumps and how slowly its coefficients fall because of that (host/flow/sutures.hpp).
 struct LevelSetSutures {

@@ -143,7 +143,7 @@ CoefficientSet read_result(const std::string& name, const json& all, const std::
   set.units.resize(set.names.size());
   Metadata metadata;
   if (expansion.contains("origin")) metadata["origin"] = origin_text(name, expansion);
-  const bool metric = all.contains("mesh") && result_json::placement(name, all).metric;
+  const bool metric = all.contains("mesh") && result_json::placement(name, all).units.stated;
   set.length_unit = metric ? "m" : mesh_length_unit;
   if (mass) {
     set.kind = CoefficientKind::multipoles;

@@ -254,6 +254,11 @@ std::string assumed_convention(const CoefficientSet& set) {
   return "";
 }
 
+std::string convention_text(Convention convention) {
+  return fmt::format("{}, {} Condon-Shortley phase", name(convention.normalisation),
+                     convention.phase == Phase::condon_shortley ? "with" : "without");
+}
+
 double remark_number(const CoefficientSet& set, const std::string& file, std::string_view word, double otherwise) {
   for (const auto& [key, text] : set.remarks) {
     if (key != word) continue;

@@ -48,6 +48,9 @@ bool words_of_this_program(const Metadata& metadata);
 /// The note on what was assumed of normalisation and phase where the file does not state them; empty where it states both.
 std::string assumed_convention(const CoefficientSet& set);
 
+/// "orthonormal, with Condon-Shortley phase".
+std::string convention_text(Convention convention);
+
 /// A remark of a file that is a number, or `otherwise` where the file has no such remark. Throws Error(file_syntax) that names
 /// file and remark where its text is no finite number (read_number()).
 double remark_number(const CoefficientSet& set, const std::string& file, std::string_view word, double otherwise);

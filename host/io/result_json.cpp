@@ -110,11 +110,11 @@ Placement placement(const std::string& name, const json& document) {
   if (!mesh.is_object() || !mesh.contains("placement")) return placement;
   const json& object = mesh.at("placement");
   if (!member(name, object, "metres_per_unit").is_null()) {
-    placement.metric = true;
-    placement.scale = number(name, object, "metres_per_unit");
+    placement.units.stated = true;
+    placement.units.metre = number(name, object, "metres_per_unit");
   }
   const json& rows = member(name, object, "rotation");
-  bool matrix = placement.scale > 0 && rows.is_array() && rows.size() == 3;
+  bool matrix = placement.units.metre > 0 && rows.is_array() && rows.size() == 3;
   for (int row = 0; matrix && row < 3; ++row) {
     const json& line = rows[std::size_t(row)];
     matrix = line.is_array() && line.size() == 3;

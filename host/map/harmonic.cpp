@@ -156,14 +156,6 @@ std::uint32_t pole_vertex(const ManifoldSurface& surface, const Pole& pole) {
   return nearest_vertex(surface, {middle.x(), top, middle.z()});
 }
 
-HarmonicOptions HarmonicOptions::paper_recipe() {
-  HarmonicOptions options;
-  options.disk_scale = 10;
-  options.polish = false;
-  options.align = false;
-  return options;
-}
-
 SphereMap harmonic_map(const ManifoldSurface& surface, const HarmonicOptions& options, Monitor& monitor) {
   if (!(options.disk_scale >= 0) || !std::isfinite(options.disk_scale))
     throw Error(Fault::bad_argument,

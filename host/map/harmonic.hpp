@@ -43,10 +43,6 @@ struct HarmonicOptions {
   /// Rotate the sphere so that directions on it look like those from the middle of the body (moebius.hpp). Otherwise the
   /// pole is at (0, 0, -1) and the vertex of smallest index among its neighbours has azimuth 0.
   bool align = true;
-
-  /// What gives the table of the paper "Higher multipoles of the cow" on its mesh: cotangent weights, the back as pole,
-  /// scale 10, nothing centred, polished or rotated.
-  static HarmonicOptions paper_recipe();
 };
 
 /// Takes the pole out; lays its neighbours on the unit circle, by arc length, from angle 0 at the neighbour of smallest

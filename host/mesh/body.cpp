@@ -86,6 +86,12 @@ double Body::mass() const {
   return double(first_moments(*this, bounding_box(surface).middle()).mass);
 }
 
+Units Body::units() const {
+  Units own = placement.units;
+  if (own.stated) own.kilogram = density * own.metre * own.metre * own.metre;
+  return own;
+}
+
 Body make_body(ClosedSurface surface, const OriginChoice& origin, double density, std::vector<Part> parts) {
   check_density(density);
   Body body(std::move(surface));

@@ -24,7 +24,7 @@ struct Part {
 };
 
 /// A body: the region inside `surface` with `density`, and parts. Lengths are in the mesh's unit and masses in density times
-/// its cube; metres and kilograms where the placement is metric.
+/// its cube; metres and kilograms where its units are stated.
 struct Body {
   explicit Body(ClosedSurface s) : surface(std::move(s)) {}
 
@@ -38,7 +38,10 @@ struct Body {
   std::string origin_kind;            ///< "centre of mass", "mesh" or "given"
   double brillouin_radius = 0;        ///< largest distance of a vertex, of parts too, from `origin`
   std::vector<Part> parts;
-  Placement placement; ///< that surface and parts have gone through
+  Placement placement; ///< what surface and parts have gone through
+
+  /// With the mass of a cubed unit of the mesh at `density`.
+  Units units() const;
 
   double mass() const;
 };

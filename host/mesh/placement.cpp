@@ -11,10 +11,11 @@
 namespace cowgpu {
 
 void place(RawMesh& mesh, const Placement& placement) {
-  if (placement.scale != 1) {
+  const double metre = placement.units.metre;
+  if (metre != 1) {
     if (!seems_balanced(mesh.faces)) ClosedSurface::from(mesh); // which refuses it with lengths in the file's unit
-    for (Vec3& v : mesh.vertices) v *= placement.scale;
-    mesh.notes.push_back(fmt::format("lengths are metres: coordinates times {}", placement.scale));
+    for (Vec3& v : mesh.vertices) v *= metre;
+    mesh.notes.push_back(fmt::format("lengths are metres: coordinates times {}", metre));
   }
   if (!placement.rotation.isIdentity(0)) {
     const Eigen::Matrix3d& r = placement.rotation;

@@ -2,18 +2,18 @@
 #pragma once
 
 #include "host/mesh/raw_mesh.hpp"
+#include "host/units.hpp"
 
 #include <Eigen/Core>
 
 namespace cowgpu {
 
-/// p -> rotation (scale p). The rotation is exact where it only names axes anew; any other rounds coordinates once.
+/// p -> rotation (units.metre p). The rotation is exact where it only names axes anew; any other rounds coordinates once.
 struct Placement {
-  double scale = 1;    ///< metres that one unit of the mesh is; 1 if not metric
-  bool metric = false; ///< whether lengths are metres, and densities kg/m3
+  Units units; ///< a mass is the body's to add (Body::units())
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
 
-  bool is_identity() const { return scale == 1 && rotation.isIdentity(0); }
+  bool is_identity() const { return units.metre == 1 && rotation.isIdentity(0); }
 };
 
 /// Moves a mesh; its hash stays that of the file, and a note says what was done. Coordinates that leave the range of doubles

@@ -26,9 +26,9 @@ class Fall {
 public:
   explicit Fall(const DropProblem& problem)
       : problem_(problem), ground_(problem.planet.radius), start_(ground_ + problem.height),
-        attitude_(problem.attitude), inertia_(problem.body.inertia.cast<Real>()), inverse_(inertia_.inverse()),
+        attitude_(problem.attitude), inertia_(problem.body.inertia().cast<Real>()), inverse_(inertia_.inverse()),
         spin_(inertia_ * problem.spin.cast<Real>()),
-        least_moment_(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(problem.body.inertia).eigenvalues()[0]) {
+        least_moment_(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(problem.body.inertia()).eigenvalues()[0]) {
     for (const Vec3& p : problem.vertices) reach_ = std::max<Real>(reach_, p.norm());
   }
 
@@ -97,7 +97,7 @@ public:
   std::vector<Block> blocks() const {
     const Real gm = problem_.planet.gm, time = radial_fall_time(gm, start_, problem_.height);
     const Real rate = 0.03L * gm / (start_ * start_ * start_) * time, turn = rate * time;
-    const Real moment = problem_.body.inertia.trace(), speed = rate * moment / (problem_.body.mass * start_);
+    const Real moment = problem_.body.inertia().trace(), speed = rate * moment / (problem_.body.mass * start_);
     return {{{place + 1}},
             {{place, place + 2}, speed * time},
             {{velocity + 1}},

@@ -12,7 +12,7 @@ namespace cowgpu::physics {
 /// At the start the body's centre of mass is at rest in an inertial frame whose origin is that centre, y upwards, the planet's
 /// centre at (0, -(ground + height), 0). The planet is a point mass that stays where it is.
 struct DropProblem {
-  MassiveBody body;
+  RigidBody body;
   PointMass planet = earth;
   double height = 0;                        ///< height of the centre of mass above the ground, m
   LongMat3 attitude = LongMat3::Identity(); ///< from the body's axes to the inertial ones

@@ -3,7 +3,7 @@
 #include "host/mesh/geometry.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/moments.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 

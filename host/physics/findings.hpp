@@ -19,8 +19,9 @@ struct Finding {
   std::string key;   ///< in JSON: "power_W"
   std::string label; ///< on the screen: "radiated power"
   Value value;
-  std::string unit = {};             ///< "W"; in JSON the member `units` has it under the same key
-  std::string missing = "not known"; ///< on the screen where there is no value, without the unit: "never"; empty: no line
+  std::string unit = {}; ///< "W"; in JSON the member `units` has it under the same key
+  std::string missing =
+      "not known"; ///< on the screen where there is no value, without the unit: "never"; empty: no line
 };
 
 /// A column of a table; the name is lower case with underscores, for JSON and CSV.
@@ -45,10 +46,24 @@ struct Table {
 struct Comparison {
   std::string quantity;
   double ours = 0, printed = 0;
-  std::string why = {}; ///< they differ: a sentence, or empty where it is the last printed digit
+  std::string why = {};   ///< they differ: a sentence, or empty where it is the last printed digit
+  double uncertainty = 0; ///< uncertainty of ours, where it is more than rounding
+  int erratum = 0;        ///< the number of the erratum that it shows (host/paper/errata.hpp); 0: none
+};
+
+/// The input that findings are about, and what there is to say of it.
+struct Subject {
+  std::string title;
+  std::string kind, name, sha256; ///< as in Findings
+  std::vector<std::string> notes;
 };
 
 struct Findings {
+  Findings() = default;
+  explicit Findings(const Subject& subject)
+      : title(subject.title), input_kind(subject.kind), input_name(subject.name), input_sha256(subject.sha256),
+        notes(subject.notes) {}
+
   std::string title;
   std::string input_kind, input_name, input_sha256; ///< "mesh" or "coefficients"; a mesh's hash, else empty
   std::vector<Finding> rows;

@@ -1,7 +1,7 @@
 #include "host/physics/potential.hpp"
 
 #include "host/error.hpp"
-#include "host/physics/tensors.hpp"
+#include "host/physics/rigid_body.hpp"
 #include "host/spectrum/convert.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/physics/potential_terms.hpp"
-#include "host/spectrum/mass_moments.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/sphere_directions.hpp"
 #include "host/sphere_transform.hpp"
 

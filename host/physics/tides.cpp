@@ -50,7 +50,7 @@ bool is_isotropic(const PrincipalAxes& principal) {
   return principal.first_two_alike && principal.last_two_alike;
 }
 
-Orbit circular_orbit(const PointMass& centre, const MassiveBody& body, double radius) {
+Orbit circular_orbit(const PointMass& centre, const RigidBody& body, double radius) {
   check_positive("mass at the centre of the orbit", centre.gm);
   check_positive("radius of the orbit", radius);
   if (body.radius_known && radius <= body.radius)
@@ -104,7 +104,7 @@ std::vector<Libration> relative_equilibria(const PrincipalAxes& principal, const
   return all;
 }
 
-OrbitTorque orbit_torque(const MassiveBody& body, const Orbit& orbit, const LongMat3& attitude) {
+OrbitTorque orbit_torque(const RigidBody& body, const Orbit& orbit, const LongMat3& attitude) {
   const LongMat3 to_body = attitude.transpose();
   const LongVec3 x = -(long double)(orbit.radius) * to_body.col(0), z = to_body.col(2);
   OrbitTorque torque;
@@ -117,7 +117,7 @@ OrbitTorque orbit_torque(const MassiveBody& body, const Orbit& orbit, const Long
   return torque;
 }
 
-ShiftedEquilibrium shifted_equilibrium(const MassiveBody& body, const Orbit& orbit, const LongMat3& start) {
+ShiftedEquilibrium shifted_equilibrium(const RigidBody& body, const Orbit& orbit, const LongMat3& start) {
   const LongMat3 q = start * body.quadrupole.cast<long double>() * start.transpose();
   const auto apart = [&](int b, int a) { return (q(a, a) - q(b, b)) / 3; };
   const long double n2 = (long double)(orbit.rate) * orbit.rate, g3 = 3 * (long double)(orbit.gradient);
@@ -155,7 +155,7 @@ double capture_half_width(const PrincipalAxes& principal, const Orbit& orbit) {
   return std::sqrt(3 * orbit.gradient * Differences{clean_quadrupole(principal)}(1, 0) / moments(principal)[2]);
 }
 
-double locking_time(const MassiveBody& body, const Orbit& orbit, double spin, double love, double quality) {
+double locking_time(const RigidBody& body, const Orbit& orbit, double spin, double love, double quality) {
   check_positive("spin", spin);
   if (!(love > 0) || !(love <= largest_love))
     throw Error(Fault::bad_argument,
@@ -164,7 +164,7 @@ double locking_time(const MassiveBody& body, const Orbit& orbit, double spin, do
   if (!(quality >= 1) || !(quality <= largest_quality))
     throw Error(Fault::bad_argument, fmt::format("the quality factor Q (--quality) is {}; it is from 1 to {:.0e}",
                                                  quality, largest_quality));
-  const double moment = body.inertia.trace() / 3, radius = std::sqrt(2.5 * moment / body.mass);
+  const double moment = body.inertia().trace() / 3, radius = std::sqrt(2.5 * moment / body.mass);
   const double ratio = orbit.radius / radius; // r^6/R^5 may leave the range
   const double time = spin * moment * quality * gravitational_constant_si / (3 * love * orbit.gm * orbit.gm) *
                       std::pow(ratio, 5) * orbit.radius;

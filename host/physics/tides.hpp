@@ -6,7 +6,7 @@
 #pragma once
 
 #include "host/physics/point_mass.hpp"
-#include "host/physics/tensors.hpp"
+#include "host/physics/rigid_body.hpp"
 
 #include <array>
 #include <optional>
@@ -24,7 +24,7 @@ struct Orbit {
 
 /// Throws Error(bad_argument) for a mass or a radius that is not above 0 and finite, point_inside for a radius inside the body's
 /// Brillouin sphere, where that is known.
-Orbit circular_orbit(const PointMass& centre, const MassiveBody& body, double radius);
+Orbit circular_orbit(const PointMass& centre, const RigidBody& body, double radius);
 
 /// How a motionless attitude in the orbit frame fares after a small disturbance.
 enum class Stability {
@@ -65,7 +65,7 @@ bool is_isotropic(const PrincipalAxes& principal);
 struct OrbitTorque {
   LongVec3 gravity = LongVec3::Zero(), rest = LongVec3::Zero();
 };
-OrbitTorque orbit_torque(const MassiveBody& body, const Orbit& orbit, const LongMat3& attitude);
+OrbitTorque orbit_torque(const RigidBody& body, const Orbit& orbit, const LongMat3& attitude);
 
 /// The attitude at rest nearest to one with principal axes along the frame's, under all degrees to body.order.
 struct ShiftedEquilibrium {
@@ -76,7 +76,7 @@ struct ShiftedEquilibrium {
 };
 /// Newton's iteration with the slope of degree 2; `start` takes principal axes along those of the frame. Turns that degree 2
 /// does not resist (an axis of symmetry) are left as they are.
-ShiftedEquilibrium shifted_equilibrium(const MassiveBody& body, const Orbit& orbit, const LongMat3& start);
+ShiftedEquilibrium shifted_equilibrium(const RigidBody& body, const Orbit& orbit, const LongMat3& start);
 
 /// 3 gm (C - A)/(2 r^3): the largest torque of degree 2 over all attitudes, at 45 degrees between the axes of A and C.
 double largest_quadrupole_torque(const PrincipalAxes& principal, const Orbit& orbit);
@@ -91,6 +91,6 @@ inline constexpr double largest_love = 1.5, largest_quality = 1e12;
 /// Time to lock from a spin rate, omega r^6 I Q / (3 G M^2 k2 R^5) in s (B. Gladman et al. 1996, Icarus 122, 166, eq. 9), with I
 /// and R the moment and the radius of the uniform ball of the body's mass and second moment. Throws Error(bad_argument) for
 /// a spin or k2 that is not above 0, k2 over largest_love, Q outside 1 to largest_quality, and a time of no computable size.
-double locking_time(const MassiveBody& body, const Orbit& orbit, double spin, double love, double quality);
+double locking_time(const RigidBody& body, const Orbit& orbit, double spin, double love, double quality);
 
 } // namespace cowgpu::physics

@@ -1,13 +1,14 @@
 #include "host/physics/tip.hpp"
 
 #include "host/error.hpp"
-#include "host/physics/tensors.hpp"
+#include "host/spectrum/reconstruct.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace cowgpu::physics {
@@ -16,23 +17,19 @@ namespace {
 // Lengths below this part of the body are rounding.
 constexpr double negligible = 1e-12;
 
-void append(TipBody& body, const ClosedSurface& surface) {
-  const auto first = static_cast<std::uint32_t>(body.vertices.size());
-  body.vertices.insert(body.vertices.end(), surface.vertices().begin(), surface.vertices().end());
-  for (const Face& face : surface.faces()) body.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
-}
-
-double size_of(const TipBody& body) {
+double size_of(const RigidBody& body) {
   double size = 0;
-  for (const Vec3& v : body.vertices) size = std::max(size, (v - body.barycentre).norm());
+  for (const Vec3& v : body.vertices) size = std::max(size, (v - body.centre).norm());
   return size;
 }
 
-void turn(TipBody& body, const Eigen::Matrix3d& rotation) {
+void turn(Stance& stance, RigidBody& body) {
+  const Eigen::Matrix3d& rotation = stance.attitude.rotation;
   if (rotation.isIdentity(0)) return;
   for (Vec3& v : body.vertices) v = rotation * v;
-  body.barycentre = rotation * body.barycentre;
-  body.inertia = rotation * body.inertia * rotation.transpose();
+  body.centre = rotation * body.centre;
+  body.quadrupole = rotation * body.quadrupole * rotation.transpose();
+  stance.inertia = rotation * stance.inertia * rotation.transpose();
 }
 
 std::pair<double, double> z_range(const std::vector<Vec3>& points) {
@@ -42,7 +39,7 @@ std::pair<double, double> z_range(const std::vector<Vec3>& points) {
 }
 
 // The longest edge of the triangles with a vertex that touches the ground.
-double contact_spacing(const TipBody& body, const std::vector<std::size_t>& touching) {
+double contact_spacing(const RigidBody& body, const std::vector<std::size_t>& touching) {
   std::vector<bool> touches(body.vertices.size(), false);
   for (const std::size_t v : touching) touches[v] = true;
   double longest = 0;
@@ -54,7 +51,7 @@ double contact_spacing(const TipBody& body, const std::vector<std::size_t>& touc
 
 // Whether the foot that a body would turn about is under its barycentre; the only foot always is.
 bool rolls_over(const Stance& stance, const Vec3& support) {
-  const double z = stance.body.barycentre.z();
+  const double z = stance.body.centre.z();
   if (stance.feet.size() == 1) return true;
   for (const Foot& foot : stance.feet)
     if (foot.left <= support.z() && support.z() <= foot.right && foot.left <= z && z <= foot.right) return true;
@@ -73,31 +70,18 @@ Vec3 farthest(const std::vector<Vec3>& support, double sign, const Vec3& barycen
 }
 
 // The balance about the barycentre in space, with the arm |(p - b) x y|.
-std::optional<double> literal_force(const TipBody& body, const Vec3& p, double sign) {
-  const Vec3 q = (body.barycentre - p).normalized();
+std::optional<double> literal_force(const RigidBody& body, const Vec3& p, double sign) {
+  const Vec3 q = (body.centre - p).normalized();
   const auto hit = last_hit(body, p, q);
   if (!hit) return std::nullopt;
   const Vec3 n = sign * q.cross(-Vec3::UnitX()).normalized();
-  const double arm = std::hypot(p.x() - body.barycentre.x(), p.z() - body.barycentre.z());
-  return arm / ((p + *hit * q - body.barycentre).norm() + n.y() * arm);
+  const double arm = std::hypot(p.x() - body.centre.x(), p.z() - body.centre.z());
+  return arm / ((p + *hit * q - body.centre).norm() + n.y() * arm);
 }
 
 } // namespace
 
-TipBody tip_body(const Body& body) {
-  const MassTensors centred = about_centre(mass_tensors(body));
-  check_weighs(centred);
-  TipBody result;
-  result.mass = centred.mass;
-  result.barycentre = body.centre_of_mass;
-  result.inertia = centred.inertia();
-  append(result, body.surface);
-  for (const Part& part : body.parts)
-    if (part.density > 0) append(result, part.surface);
-  return result;
-}
-
-TipBody tip_body(const TriangleSurface& surface, double mass, std::string& note) {
+RigidBody smooth_body(const TriangleSurface& surface, double mass, std::string& note) {
   RawMesh mesh;
   mesh.name = surface.name;
   mesh.vertices = surface.vertices;
@@ -108,21 +92,32 @@ TipBody tip_body(const TriangleSurface& surface, double mass, std::string& note)
   }
   ClosedSurface closed = ClosedSurface::from(std::move(mesh));
   const double density = mass / volume(closed);
-  TipBody body = tip_body(make_body(std::move(closed), {}, density));
+  RigidBody body = solid_body(make_body(std::move(closed), {}, density));
   body.smooth = true;
   return body;
 }
 
-Stance stand(TipBody body, const StandOptions& options, const Monitor& monitor) {
+RigidBody ball_like(const RigidBody& body, double volume) {
+  const SphereTriangulation sphere = icosphere(4);
+  const double radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
+  TriangleSurface ball;
+  ball.faces = sphere.faces;
+  for (const Vec3& direction : sphere.directions) ball.vertices.emplace_back(body.centre + radius * direction);
+  std::string note;
+  return smooth_body(ball, body.mass, note);
+}
+
+Stance stand(RigidBody body, const StandOptions& options, const Monitor& monitor) {
   Stance stance;
+  stance.inertia = body.inertia();
   if (!options.as_modelled) {
-    stance.attitude = settle(body.vertices, body.barycentre, monitor);
-    turn(body, stance.attitude.rotation);
+    stance.attitude = settle(body.vertices, body.centre, monitor);
+    turn(stance, body);
   }
   const double size = size_of(body);
-  stance.contact = contact(body.vertices, body.barycentre, options.contact_tolerance);
+  stance.contact = contact(body.vertices, body.centre, options.contact_tolerance);
   const auto [left, right] = z_range(stance.contact.support);
-  const double z = body.barycentre.z();
+  const double z = body.centre.z();
   double slack = 1e-9 * size;
   if (body.smooth) {
     stance.feet = feet(body.vertices, body.faces, stance.contact.vertices, stance.contact.ground, size);
@@ -154,9 +149,9 @@ double Tipping::slip_force(double mu) const {
 }
 
 Tipping tipping(const Stance& stance, Side side) {
-  const TipBody& body = stance.body;
+  const RigidBody& body = stance.body;
   const double sign = side == Side::right ? 1 : -1, size = size_of(body);
-  const Vec3& b = body.barycentre;
+  const Vec3& b = body.centre;
   Tipping t;
   t.side = side;
   t.support = farthest(stance.contact.support, sign, b, negligible * size);
@@ -182,15 +177,19 @@ Tipping tipping(const Stance& stance, Side side) {
   t.force_paper_balance = t.offset == 0 ? 0 : t.offset / paper;
   t.force_paper_literal = literal_force(body, t.support, sign);
   t.friction_needed = t.force * std::abs(t.direction.z()) / (1 - t.force * t.direction.y());
-  t.inertia = body.inertia(0, 0) + body.mass * t.radius * t.radius;
+  t.inertia = stance.inertia(0, 0) + body.mass * t.radius * t.radius;
   return t;
+}
+
+Rocker rocker(double mass, const Tipping& tipping, double gravity, bool turns_with_body) {
+  return {mass, gravity, tipping.inertia, tipping.radius, tipping.balance_angle(), tipping.lever, turns_with_body};
 }
 
 Side weaker_side(const Tipping& left, const Tipping& right) {
   return left.force < right.force * (1 - 1e-12) ? Side::left : Side::right;
 }
 
-std::optional<double> last_hit(const TipBody& body, const Vec3& start, const Vec3& direction) {
+std::optional<double> last_hit(const RigidBody& body, const Vec3& start, const Vec3& direction) {
   // Moeller and Trumbore, J. Graphics Tools 2 (1997) 21; triangles are a little wider than they are, so that none is missed
   // between two.
   const double reach = negligible * size_of(body);

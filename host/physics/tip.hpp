@@ -13,10 +13,11 @@
 // arm |(p - b) x y| counts a fore-aft offset too, which gives no torque about x.
 #pragma once
 
-#include "host/mesh/body.hpp"
 #include "host/mesh/triangle_surface.hpp"
 #include "host/monitor.hpp"
 #include "host/physics/feet.hpp"
+#include "host/physics/push.hpp"
+#include "host/physics/rigid_body.hpp"
 #include "host/physics/settle.hpp"
 
 #include <Eigen/Core>
@@ -29,23 +30,13 @@ namespace cowgpu::physics {
 
 inline constexpr double standard_gravity = 9.80665; ///< m/s^2
 
-/// A rigid body with its surface, in any units; y is up.
-struct TipBody {
-  double mass = 0;
-  Vec3 barycentre = Vec3::Zero();
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero(); ///< about the barycentre
-  std::vector<Vec3> vertices;                        ///< vertices of what is solid
-  std::vector<Face> faces;
-  bool smooth = false; ///< the triangles stand for a smooth surface: one that touches at a single point rolls there
-};
+/// A closed triangulation of a smooth surface as a body of uniform density with this mass: regions count by the winding
+/// number, and what is inside out as a whole is turned; `note` says so. Throws what ClosedSurface::from() and make_body()
+/// throw.
+RigidBody smooth_body(const TriangleSurface& surface, double mass, std::string& note);
 
-/// Of a mesh with its parts; those whose density is not above 0 are holes, which nothing stands on. Throws what about_centre()
-/// and check_weighs() throw.
-TipBody tip_body(const Body& body);
-
-/// Of a closed triangulation of a smooth surface, of uniform density with this mass: regions count by the winding number,
-/// and what is inside out as a whole is turned; `note` says so. Throws what ClosedSurface::from() and make_body() throw.
-TipBody tip_body(const TriangleSurface& surface, double mass, std::string& note);
+/// A ball with this body's centre and mass and so large a volume, smooth, standing on one of its vertices as modelled.
+RigidBody ball_like(const RigidBody& body, double volume);
 
 /// How a body is stood on the ground.
 struct StandOptions {
@@ -53,17 +44,18 @@ struct StandOptions {
   double contact_tolerance = 0; ///< what is no higher above the ground touches it, in the body's unit
 };
 
-/// A body on the ground, its own axes those of the world: turned about the origin of its coordinates.
+/// A body on the ground, its own axes those of the world, y up: turned about the origin of its coordinates.
 struct Stance {
-  TipBody body;
+  RigidBody body;
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero(); ///< about the centre of mass
   Attitude attitude;
   Contact contact;
   std::vector<Foot> feet; ///< feet of a smooth body
   bool held = false; ///< the barycentre is over the patch sideways but not fore and aft: something else must hold it
 };
 
-/// Throws Error(cannot_stand) where the barycentre lies beside the contact patch, and what settle() throws.
-Stance stand(TipBody body, const StandOptions& options, const Monitor& monitor = silent_monitor());
+/// Stands a body that has a surface, in any units. Throws Error(cannot_stand) where the barycentre lies beside the contact patch, and what settle() throws.
+Stance stand(RigidBody body, const StandOptions& options, const Monitor& monitor = silent_monitor());
 
 /// The side that a body falls to: z is its right.
 enum class Side { left, right };
@@ -96,11 +88,14 @@ struct Tipping {
 /// Throws Error(cannot_stand) where the ray q meets no surface (a barycentre outside the body, and nothing beyond).
 Tipping tipping(const Stance& stance, Side side);
 
+/// The same as a body that is pushed for a while, in SI.
+Rocker rocker(double mass, const Tipping& tipping, double gravity, bool turns_with_body);
+
 /// The side that needs less; the right where both need the same to 1e-12.
 Side weaker_side(const Tipping& left, const Tipping& right);
 
 /// The largest t > 0 for which start + t direction lies on the surface, to 1e-12 of each triangle; nothing where there is
 /// none. O(faces).
-std::optional<double> last_hit(const TipBody& body, const Vec3& start, const Vec3& direction);
+std::optional<double> last_hit(const RigidBody& body, const Vec3& start, const Vec3& direction);
 
 } // namespace cowgpu::physics

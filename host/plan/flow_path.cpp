@@ -1,6 +1,6 @@
 #include "host/plan/flow_path.hpp"
 
-#include "host/reference/flow.hpp"
+#include "host/plan/flow_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,10 +24,10 @@ constexpr int most_rounds = 2000; // rounds of steps as long as the distance
 
 // shaders/flow.comp does the same operations in the same order.
 double norm(const Vec3& a) {
-  return reference::norm<double>(a);
+  return plan::norm<double>(a);
 }
 double square(const Vec3& a) {
-  return reference::dot<double>(a, a);
+  return dot<double>(a, a);
 }
 
 // What a step may be multiplied by: errors per step go with its fourth power.
@@ -115,9 +115,8 @@ void FlowPath::look(const Vec3& x, View& view) const {
     view.weights[0] = view.weights[1] = 0.5;
     view.velocity = (view.normals[0] + view.normals[1]) / 2;
   } else {
-    reference::least_norm_in_hull<double>(std::span<const Vec3>(view.normals.data(), std::size_t(view.count)),
-                                          view.velocity,
-                                          std::span<double>(view.weights.data(), std::size_t(view.count)));
+    least_norm_in_hull<double>(std::span<const Vec3>(view.normals.data(), std::size_t(view.count)), view.velocity,
+                               std::span<double>(view.weights.data(), std::size_t(view.count)));
   }
 }
 
@@ -189,7 +188,7 @@ void FlowPath::begin_ray(const Vec3& foot, const Vec3& normal, double distance, 
 
 void FlowPath::shrink(std::uint32_t face) {
   const Vec3 point = surface_->foot(face, query_).point;
-  if (!reference::shrink<double>(ball_.foot, ball_.normal, point, small(rounding, ball_.radius), ball_.radius) ||
+  if (!plan::shrink<double>(ball_.foot, ball_.normal, point, small(rounding, ball_.radius), ball_.radius) ||
       ++ball_.rounds == 100) {
     ball_.radius = std::max(ball_.distance, ball_.radius);
     return end_ray();
@@ -224,7 +223,7 @@ void FlowPath::end_ray() {
 
 // With an error wanted `view` is that from the step's end.
 Vec3 FlowPath::slide_step(const Vec3& from, const Vec3& velocity, double step, View& view, double* error) const {
-  return reference::dormand_prince<double>(
+  return dormand_prince<double>(
       from, step, velocity,
       [&](const Vec3& y) {
         look(y, view);
@@ -251,7 +250,7 @@ void FlowPath::balance(Vec3& x, View& view) const {
     } else {
       const Vec3 c = view.normals[at(2)] - view.normals[at(0)];
       rc = view.distances[at(0)] - view.distances[at(2)];
-      const double cc = square(c), ac = reference::dot<double>(a, c), determinant = aa * cc - ac * ac;
+      const double cc = square(c), ac = dot<double>(a, c), determinant = aa * cc - ac * ac;
       if (!(determinant > 1e-14 * aa * cc)) return;
       x += (ra * cc - rc * ac) / determinant * a + (rc * aa - ra * ac) / determinant * c;
     }

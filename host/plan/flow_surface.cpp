@@ -4,7 +4,7 @@
 #include "host/geometry/morton.hpp"
 #include "host/plan/closest_kernel.hpp"
 #include "host/plan/closest_query.hpp"
-#include "host/reference/flow.hpp"
+#include "host/plan/flow_steps.hpp"
 
 #include <Eigen/Geometry>
 
@@ -31,7 +31,7 @@ Foot FlowSurface::foot(std::uint32_t face, const Vec3& p) const {
   const TriangleFrame<double>& t = frames_[face];
   const Eigen::Map<const Vec3> a(t.a), u(t.u), v(t.v);
   const Vec3 r = p - a;
-  const double x = reference::dot<double>(u, r), y = reference::dot<double>(v, r);
+  const double x = dot<double>(u, r), y = dot<double>(v, r);
   Foot foot;
   double qx = x, qy = y;
   foot.inside = y > 0 && t.cx * y - t.cy * x < 0 && t.ex * y - t.ey * (x - t.length) > 0;
@@ -47,7 +47,7 @@ Foot FlowSurface::foot(std::uint32_t face, const Vec3& p) const {
     if (square(xb - se * t.ex) + square(y - se * t.ey) < least) qx = t.length + se * t.ex, qy = se * t.ey;
   }
   foot.point = a + qx * u + qy * v;
-  foot.distance = reference::norm<double>(p - foot.point);
+  foot.distance = norm<double>(p - foot.point);
   return foot;
 }
 

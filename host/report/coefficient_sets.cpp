@@ -18,11 +18,11 @@ Provenance provenance_of(const ExpandResult& result) {
 }
 
 std::string length_unit(const Body& body) {
-  return body.placement.metric ? "m" : std::string(mesh_length_unit);
+  return body.units().stated ? "m" : std::string(mesh_length_unit);
 }
 
 std::string mass_unit(const Body& body) {
-  return body.placement.metric ? "kg" : std::string(mesh_mass_unit);
+  return body.units().stated ? "kg" : std::string(mesh_mass_unit);
 }
 
 double second_moment_of(const ExpandResult& result) {

@@ -16,7 +16,7 @@ double second_moment_of(const ExpandResult& result);
 /// The six fields of a surface, in the same convention.
 CoefficientSet surface_set(const ExpandResult& result, const SurfaceResult& surface);
 
-/// The units of a body: m and kg where its placement is metric, else what stands for those of the mesh.
+/// The units of a body: m and kg where they are stated, else what stands for those of the mesh.
 std::string length_unit(const Body& body);
 std::string mass_unit(const Body& body);
 

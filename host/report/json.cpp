@@ -49,7 +49,7 @@ ordered_json json_of(const Body& body) {
                        {"bounding_box", {json_of(body.box.min), json_of(body.box.max)}},
                        {"brillouin_radius", body.brillouin_radius},
                        {"placement", {{"metres_per_unit", nullptr}, {"rotation", json_of(body.placement.rotation)}}}};
-  if (body.placement.metric) json["placement"]["metres_per_unit"] = body.placement.scale;
+  if (body.units().stated) json["placement"]["metres_per_unit"] = body.units().metre;
   ordered_json parts = ordered_json::array();
   for (const Part& part : body.parts) parts.push_back(json_of(part));
   json["parts"] = parts;
@@ -119,7 +119,7 @@ void write_coefficients(const Multipoles& q, const Sink& sink) {
 }
 
 void write_mass(const ExpandResult& result, const Sink& sink) {
-  const bool metric = result.body.placement.metric;
+  const bool metric = result.body.units().stated;
   const ordered_json mass = {
       {"lmax", result.mass.lmax},
       {"origin", json_of(result.mass.origin)},
@@ -156,7 +156,7 @@ void write_json(const ExpandResult& result, const Sink& sink) {
       {"notes", result.notes},
       {"tensors",
        {{"origin", json_of(result.body.origin)},
-        {"units", result.body.placement.metric ? "kg m^2" : "density * length^5, in the mesh's length unit"},
+        {"units", result.body.units().stated ? "kg m^2" : "density * length^5, in the mesh's length unit"},
         {"quadrupole", json_of(result.tensors.quadrupole)},
         {"inertia", json_of(result.tensors.inertia)},
         {"second_moment", json_of(result.tensors.second_moment)}}},

@@ -42,37 +42,37 @@ struct Repeats {
   double energy = 0, largest = 0, rms = 0; // the worst: relative; of those that reach the map's energy
 };
 
-Repeats summary(const MapReport& report) {
+Repeats summary(const MapResult& result) {
   Repeats all;
-  for (const StretchRepeat& repeat : report.repeats) {
+  for (const StretchRepeat& repeat : result.repeats) {
     if (!repeat.reached) continue;
     ++all.reached;
-    all.energy = std::max(all.energy, std::abs(repeat.energy / report.stretch->energy - 1));
+    all.energy = std::max(all.energy, std::abs(repeat.energy / result.stretch->energy - 1));
     all.largest = std::max(all.largest, repeat.largest);
     all.rms = std::max(all.rms, repeat.rms);
   }
   return all;
 }
 
-std::string repeats_text(const MapReport& report) {
-  const Repeats all = summary(report);
+std::string repeats_text(const MapResult& result) {
+  const Repeats all = summary(result);
   std::string text =
-      fmt::format("{} of {} copies reach this mean square to {:.0e}", all.reached, report.repeats.size(), same_minimum);
+      fmt::format("{} of {} copies reach this mean square to {:.0e}", all.reached, result.repeats.size(), same_minimum);
   if (all.reached > 0)
     text += fmt::format(" (to {:.1e}, positions to {:.1e}, root mean square {:.1e})", all.energy, all.largest, all.rms);
-  return text + fmt::format(", in {:.3f} s", report.repeat_seconds);
+  return text + fmt::format(", in {:.3f} s", result.repeat_seconds);
 }
 
-ordered_json stretch_json(const MapReport& report) {
-  if (!report.stretch) return nullptr;
+ordered_json stretch_json(const MapResult& result) {
+  if (!result.stretch) return nullptr;
   ordered_json copies = ordered_json::array();
-  for (const StretchRepeat& r : report.repeats)
+  for (const StretchRepeat& r : result.repeats)
     copies.push_back(
         {{"seed", r.seed}, {"energy", r.energy}, {"largest", r.largest}, {"rms", r.rms}, {"reached", r.reached}});
   return {
-      {"energy", report.stretch->energy},
-      {"gradient", report.stretch->gradient},
-      {"relabellings", {{"count", report.repeats.size()}, {"reached", summary(report).reached}, {"copies", copies}}}};
+      {"energy", result.stretch->energy},
+      {"gradient", result.stretch->gradient},
+      {"relabellings", {{"count", result.repeats.size()}, {"reached", summary(result).reached}, {"copies", copies}}}};
 }
 
 ordered_json quality_json(const MapQuality& q) {
@@ -100,21 +100,21 @@ ordered_json quality_json(const MapQuality& q) {
 
 } // namespace
 
-void write_screen(const MapReport& report, const Sink& sink) {
+void write_screen(const MapResult& result, const Sink& sink) {
   const auto row = [&](const char* what, const std::string& value) { sink(fmt::format("  {:<24} {}\n", what, value)); };
-  const MapQuality& q = report.quality;
-  const RawMesh& mesh = *report.mesh;
+  const MapQuality& q = result.quality;
+  const RawMesh& mesh = result.surface.closed().mesh();
   sink(mesh_line(mesh) + "\n");
-  for (const std::string& note : report.notes) sink("note: " + note + "\n");
-  sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", name(report.map->method), report.map_seconds,
-                   report.judge_seconds));
-  for (const std::string& note : report.map->notes) sink("note: " + note + "\n");
-  if (report.flow) {
-    sink(fmt::format("flow: for T = {:.9g} ({}), {}\n", report.flow->time,
-                     report.flow->time_choice == "auto" ? "the least time that is star-shaped" : "given",
-                     flow_points_text(report.flow->points)));
-    sink("flow: " + star_shape_text(report.flow->star) + "\n");
-    sink("flow: " + star_shape_sentence(report.flow->star, report.flow->time) + "\n");
+  for (const std::string& note : result.notes) sink("note: " + note + "\n");
+  sink(fmt::format("map: {}, made in {:.3f} s, judged in {:.3f} s\n", name(result.map.method), result.map_seconds,
+                   result.judge_seconds));
+  for (const std::string& note : result.map.notes) sink("note: " + note + "\n");
+  if (result.flow) {
+    sink(fmt::format("flow: for T = {:.9g} ({}), {}\n", result.flow->time,
+                     result.flow->time_choice == "auto" ? "the least time that is star-shaped" : "given",
+                     flow_points_text(result.flow->points)));
+    sink("flow: " + star_shape_text(result.flow->star) + "\n");
+    sink("flow: " + star_shape_sentence(result.flow->star, result.flow->time) + "\n");
   }
   sink(fmt::format("judged against a grid for lmax {}, whose cells are {:.3g} degrees ({:.3e} rad) high:\n", q.lmax,
                    q.cell * 180 / std::numbers::pi, q.cell));
@@ -126,41 +126,41 @@ void write_screen(const MapReport& report, const Sink& sink) {
                                        q.smallest_area / (q.cell * q.cell), where(mesh, q.smallest_area_face)));
   row("smallest height", fmt::format("{:.3e} rad, {:.3g} of a cell, {}", q.smallest_height, q.smallest_height / q.cell,
                                      where(mesh, q.smallest_height_face)));
-  if (report.stretch)
+  if (result.stretch)
     row("stretch",
         fmt::format("mean square {:.9g} (an isometry tends to 1 as triangles shrink, and is above it on coarse "
                     "ones), gradient {:.1e}",
-                    report.stretch->energy, report.stretch->gradient));
-  if (!report.repeats.empty()) row("relabelled and turned", repeats_text(report));
+                    result.stretch->energy, result.stretch->gradient));
+  if (!result.repeats.empty()) row("relabelled and turned", repeats_text(result));
   row("seen by the grid", fmt::format("{} of {} triangles, {:.6g} % of the surface", q.triangles - q.unseen,
                                       q.triangles, 100 * (1 - q.unseen_area)));
   sink("in words:\n");
   for (const std::string& sentence : q.sentences) sink("  " + sentence + ".\n");
 }
 
-void write_json(const MapReport& report, const Sink& sink) {
-  const RawMesh& mesh = *report.mesh;
-  std::vector<std::string> notes = report.notes;
-  notes.insert(notes.end(), report.map->notes.begin(), report.map->notes.end());
+void write_json(const MapResult& result, const std::vector<std::string>& command, const Sink& sink) {
+  const RawMesh& mesh = result.surface.closed().mesh();
+  std::vector<std::string> notes = result.notes;
+  notes.insert(notes.end(), result.map.notes.begin(), result.map.notes.end());
   ordered_json all = {
       {"schema", "cowgpu.map.v1"},
       {"program", program_json()},
-      {"command", report.command},
-      {"created", report.created},
+      {"command", command},
+      {"created", utc_now()},
       {"mesh",
        {{"name", mesh.name},
         {"sha256", mesh.sha256},
         {"vertices", mesh.vertices.size()},
         {"faces", mesh.faces.size()}}},
-      {"method", name(report.map->method)},
+      {"method", name(result.map.method)},
       {"notes", notes},
-      {"output", report.output.empty() ? ordered_json() : ordered_json(report.output)},
-      {"quality", quality_json(report.quality)},
-      {"stretch", stretch_json(report)},
+      {"output", result.output.empty() ? ordered_json() : ordered_json(result.output)},
+      {"quality", quality_json(result.quality)},
+      {"stretch", stretch_json(result)},
       {"timings",
-       {{"map", report.map_seconds}, {"judge", report.judge_seconds}, {"relabellings", report.repeat_seconds}}}};
-  if (report.flow) {
-    const FlowMapReport& flow = *report.flow;
+       {{"map", result.map_seconds}, {"judge", result.judge_seconds}, {"relabellings", result.repeat_seconds}}}};
+  if (result.flow) {
+    const FlowMapReport& flow = *result.flow;
     all["flow"] = {{"time", flow.time},
                    {"time_choice", flow.time_choice},
                    {"origin", {flow.origin.x(), flow.origin.y(), flow.origin.z()}},

@@ -1,4 +1,4 @@
-// A map to the sphere and what it is worth, ready to be shown.
+// A map to the sphere and what it is worth, ready to be shown (host/requests/map.hpp).
 #pragma once
 
 #include "host/flow.hpp"
@@ -22,25 +22,23 @@ struct FlowMapReport {
   FlowReport points;
 };
 
-/// Result of `map`.
-struct MapReport {
-  std::vector<std::string> command; ///< as typed
-  std::string created;              ///< UTC, ISO 8601
-  const RawMesh* mesh = nullptr;
-  std::vector<std::string> notes; ///< on the mesh
-  const SphereMap* map = nullptr;
-  MapQuality quality;
-  std::optional<StretchMeasure> stretch; ///< stretch of the stretch map
-  std::vector<StretchRepeat> repeats;    ///< repeats of the stretch map on relabelled copies, if they were asked for
-  std::optional<FlowMapReport> flow;     ///< report of the flow's map
-  std::string output;                    ///< the file written, or empty
+/// A map of a surface, and what it is worth.
+struct MapResult {
+  ManifoldSurface surface;
+  SphereMap map = {};
+  std::vector<std::string> notes = {}; ///< on the mesh
+  MapQuality quality = {};
+  std::optional<StretchMeasure> stretch = {}; ///< stretch of the stretch map
+  std::vector<StretchRepeat> repeats = {}; ///< repeats of the stretch map on relabelled copies, if they were asked for
+  std::optional<FlowMapReport> flow = {};  ///< report of the flow's map
+  std::string output = {};                 ///< the file that the caller wrote, or empty
   double map_seconds = 0, judge_seconds = 0, repeat_seconds = 0; ///< wall time
 };
 
 /// For people: the mesh, the method and its notes, a table of figures, the same in sentences.
-void write_screen(const MapReport& report, const Sink& sink);
+void write_screen(const MapResult& result, const Sink& sink);
 
 /// As JSON after data/schemas/cowgpu.map.v1.json; infinite numbers are null.
-void write_json(const MapReport& report, const Sink& sink);
+void write_json(const MapResult& result, const std::vector<std::string>& command, const Sink& sink);
 
 } // namespace cowgpu

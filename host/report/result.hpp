@@ -7,7 +7,7 @@
 #include "host/multipoles.hpp"
 #include "host/report/surface_result.hpp"
 #include "host/run_report.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/mass/verify.hpp"
 
 #include <functional>
 #include <string>

@@ -76,7 +76,7 @@ void write_computed(const ExpandResult& result, const Sink& sink) {
 }
 
 void write_body(const Body& body, const Sink& sink) {
-  const bool metric = body.placement.metric;
+  const bool metric = body.units().stated;
   sink(fmt::format("\nbody, in {}, density {:.17g}{}\n",
                    metric ? "metres and kilograms" : "the mesh's length unit and axes", body.density,
                    metric ? " kg/m3" : ""));
@@ -94,7 +94,7 @@ void write_body(const Body& body, const Sink& sink) {
 
 void write_leading(const ExpandResult& result, const Sink& sink) {
   sink("\nleading mass multipoles Q_lm = integral of density r^l Y_lm about the origin: raw (not divided by R^l), in ");
-  sink(result.body.placement.metric ? "kg m^l" : "mesh units");
+  sink(result.body.units().stated ? "kg m^l" : "mesh units");
   sink(",\nnot conjugated; Y_lm orthonormal with the Condon-Shortley phase, polar axis z; Q_l,-m = (-1)^m conj "
        "Q_lm\n");
   write_table(result.mass, sink);

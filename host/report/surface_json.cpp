@@ -2,7 +2,7 @@
 
 #include "host/io/number.hpp"
 #include "host/report/json_parts.hpp"
-#include "host/spectrum/paper_tables.hpp"
+#include "host/paper/surface_tables.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

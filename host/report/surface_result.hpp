@@ -4,7 +4,7 @@
 #include "host/map/quality.hpp"
 #include "host/report/flow_result.hpp"
 #include "host/spectrum/expand_surface.hpp"
-#include "host/spectrum/paper_tables.hpp"
+#include "host/paper/surface_tables.hpp"
 
 #include <cstdint>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "host/report/surface_result.hpp"
 
-#include "host/spectrum/paper_tables.hpp"
+#include "host/paper/surface_tables.hpp"
 
 #include <fmt/format.h>
 

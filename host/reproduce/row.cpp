@@ -44,10 +44,9 @@ double last_digit(std::string_view printed) {
   return number(fmt::format("1e{}", exponent));
 }
 
-Row compared(std::string table, std::string item, const std::vector<std::string>& printed, std::vector<double> ours,
-             std::string reason, std::string source) {
-  Row row{std::move(table), std::move(item), shown(printed), {}, std::move(ours), {}, {}, {}, std::move(source)};
-  for (const std::string& part : printed) row.paper.push_back(number(part));
+Row compared(const paper::Printed& printed, std::vector<double> ours, std::string source) {
+  Row row{printed.table, printed.item, shown(printed.parts), {}, std::move(ours), {}, {}, {}, std::move(source)};
+  for (const std::string& part : printed.parts) row.paper.push_back(number(part));
   if (row.ours.size() != row.paper.size()) {
     row.ours.clear();
     row.reason = "it was not computed";
@@ -56,12 +55,12 @@ Row compared(std::string table, std::string item, const std::vector<std::string>
   row.verdict = Verdict::agrees;
   double square = 0;
   for (std::size_t i = 0; i < row.paper.size(); ++i) {
-    const double difference = row.ours[i] - row.paper[i], unit = last_digit(printed[i]);
+    const double difference = row.ours[i] - row.paper[i], unit = last_digit(printed.parts[i]);
     square += difference * difference;
     if (!(std::abs(difference) <= 0.5 * unit * (1 + 1e-9))) row.verdict = Verdict::differs;
   }
   row.difference = row.paper.size() == 1 ? row.ours[0] - row.paper[0] : std::sqrt(square);
-  if (row.verdict == Verdict::differs) row.reason = std::move(reason);
+  if (row.verdict == Verdict::differs) row.reason = printed.reason;
   return row;
 }
 

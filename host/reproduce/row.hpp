@@ -1,6 +1,8 @@
 // A number of the paper "Higher multipoles of the cow" beside ours.
 #pragma once
 
+#include "host/paper/printed.hpp"
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,9 +36,8 @@ struct Row {
 /// text that is no decimal number.
 double last_digit(std::string_view printed);
 
-/// A row with difference and verdict: ours agrees where each part is within half a unit of the paper's last digit.
-/// `printed` holds a number or two (real and imaginary part). `reason` is kept only where they differ.
-Row compared(std::string table, std::string item, const std::vector<std::string>& printed, std::vector<double> ours,
-             std::string reason, std::string source);
+/// A row with difference and verdict: ours agrees where each part is within half a unit of the paper's last digit. The reason
+/// is kept only where they differ. Throws Error(bad_argument) for what is printed in words.
+Row compared(const paper::Printed& printed, std::vector<double> ours, std::string source);
 
 } // namespace cowgpu::reproduce

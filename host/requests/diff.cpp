@@ -4,6 +4,7 @@
 #include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/length_unit.hpp"
+#include "host/report/json_parts.hpp"
 #include "host/spectrum/convert.hpp"
 
 namespace cowgpu {
@@ -26,6 +27,10 @@ DiffResult diff(const DiffRequest& request) {
   const CoefficientSet a = read(request, request.first, unit_used), b = read(request, request.second, unit_used);
   if (request.metres && !unit_used) throw Error(Fault::bad_argument, "--length-unit: both files are in metres already");
   DiffResult result;
+  result.created = utc_now();
+  result.first = request.first.string();
+  result.second = request.second.string();
+  result.tolerance = request.tolerance;
   for (const std::string& note : a.notes) result.notes.push_back("A: " + note);
   for (const std::string& note : b.notes) result.notes.push_back("B: " + note);
   result.difference = difference(a, b, request.convention);

@@ -5,7 +5,7 @@
 #include "host/plan/moments.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/requests/memory.hpp"
-#include "host/spectrum/translate.hpp"
+#include "host/mass/translate.hpp"
 
 #include <fmt/format.h>
 

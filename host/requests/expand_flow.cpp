@@ -13,7 +13,6 @@
 namespace cowgpu {
 namespace {
 
-constexpr double paper_time = 0.2;
 constexpr double flow_tolerance = 1e-6;
 
 std::uint64_t grid_points(int degree) {
@@ -68,19 +67,16 @@ void sheets(const FlowChoice& choice, const ExpandSurfaceOptions& options, const
   result.map_seconds = seconds_since(start);
 }
 
-void paper(const FlowChoice& choice, ExpandSurfaceOptions options, const ManifoldSurface& surface, Backend& backend,
-           Monitor& monitor, SurfaceResult& result) {
+void steps(const FlowChoice& choice, const ExpandSurfaceOptions& options, const ManifoldSurface& surface,
+           Backend& backend, Monitor& monitor, SurfaceResult& result) {
   FlowResult& flow = *result.flow;
   const RawMesh& mesh = surface.closed().mesh();
-  flow.time = paper_time;
   flow.star = find_star_shape_time(mesh, options.origin, backend, monitor);
-  options.closest_point = true;
-  options.signed_dphi = false;
-  options.estimate_aliasing = true;
+  flow.time = flow_time(choice.time, flow.star);
   const auto start = Clock::now();
-  result.map = paper_flow_map(mesh, options.origin, backend, monitor, paper_time);
+  result.map = stepped_flow_map(mesh, options.origin, flow.time, choice.step, backend, monitor);
   result.map_seconds = seconds_since(start);
-  result.closest_point = true;
+  result.closest_point = options.closest_point;
   result.expansion =
       expand_surface(surface.vertices(), surface.faces(), result.map, options, backend, monitor, &result.report);
   SheetExpansion found = signed_sheets(choice, flow.time, options, surface, backend, monitor);
@@ -95,40 +91,42 @@ void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const Ma
                  const Vec3& origin, Backend& backend, Monitor& monitor, SurfaceResult& result) {
   FlowResult& flow = result.flow.emplace();
   const FlowChoice& how = choice.flow;
-  const double given = choice.paper ? paper_time : how.time;
-  if (given > 0) check_flow_time(given, bounding_box(surface.vertices(), surface.faces()));
-  flow.meaning = choice.paper ? "paper" : how.sheets ? "sheets" : "level-set";
-  flow.time_choice = choice.paper ? "paper" : how.time > 0 ? "given" : "auto";
+  const bool stepped = how.meaning == FlowMeaning::steps, in_sheets = how.meaning == FlowMeaning::sheets;
+  if (how.time > 0) check_flow_time(how.time, bounding_box(surface.vertices(), surface.faces()));
+  flow.meaning = stepped ? "paper" : in_sheets ? "sheets" : "level-set"; // the words of results
+  flow.time_choice = choice.reading.recipe == "paper" ? "paper" : how.time > 0 ? "given" : "auto";
   ExpandSurfaceOptions options;
   options.lmax = choice.lmax;
   options.origin = origin;
-  options.estimate_aliasing = estimate_aliasing;
-  if (choice.paper)
-    paper(how, options, surface, backend, monitor, result);
-  else if (how.sheets)
+  options.closest_point = choice.reading.closest_point;
+  options.signed_dphi = choice.reading.signed_dphi;
+  options.estimate_aliasing = estimate_aliasing || choice.reading.estimate_aliasing;
+  if (stepped)
+    steps(how, options, surface, backend, monitor, result);
+  else if (in_sheets)
     sheets(how, options, surface, backend, monitor, result);
   else
     level_set(how.time, how.grid_degree, options, surface, backend, monitor, result);
   if (flow.time < flow.star.upper) result.map.notes.push_back(star_shape_sentence(flow.star, flow.time));
 }
 
-MemoryNeed expand_flow_memory(const ExpansionChoice& choice, std::span<const Vec3> vertices,
+MemoryNeed expand_flow_memory(const FlowChoice& choice, int lmax, std::span<const Vec3> vertices,
                               std::span<const Face> faces, const Backend& backend) {
-  const std::uint64_t coefficients = 6 * 16 * SphereCoefficients::count(choice.lmax);
-  if (!choice.paper && !choice.flow.sheets) {
+  const std::uint64_t coefficients = 6 * 16 * SphereCoefficients::count(lmax);
+  if (choice.meaning == FlowMeaning::level_set) {
     // A grid of its own: positions, the six fields, and a batch of rays.
     MemoryNeed need = backend.distance_field(vertices, faces)->memory(std::uint64_t(1) << 18);
-    need.host += grid_points(std::max(choice.flow.grid_degree, surface_grid_degree(choice.lmax))) * 9 * sizeof(double);
+    need.host += grid_points(std::max(choice.grid_degree, surface_grid_degree(lmax))) * 9 * sizeof(double);
     need.host += 3 * coefficients; // coefficients on the three grids
     return need;
   }
   // Paths and positions of the finest vertices, its faces, and caps of these.
-  const std::uint64_t times = std::uint64_t(1) << (2 * choice.flow.refinements);
+  const std::uint64_t times = std::uint64_t(1) << (2 * choice.refinements);
   MemoryNeed need = backend.distance_flow(vertices, faces)->memory(times * vertices.size());
   need.host += times * (vertices.size() * 100 + faces.size() * 120);
-  need.host += (std::uint64_t(choice.flow.refinements) + 2) * coefficients; // each level's
+  need.host += (std::uint64_t(choice.refinements) + 2) * coefficients; // each level's
   // The six fields on their grid, and on the coarser one that shows its error.
-  need.host += grid_points(sheets_grid_degree(choice.lmax)) * 6 * 2 * sizeof(double);
+  need.host += grid_points(sheets_grid_degree(lmax)) * 6 * 2 * sizeof(double);
   return need;
 }
 

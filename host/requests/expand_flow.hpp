@@ -13,7 +13,7 @@ void expand_flow(const ExpansionChoice& choice, bool estimate_aliasing, const Ma
                  const Vec3& origin, Backend& backend, Monitor& monitor, SurfaceResult& result);
 
 /// What that needs at most beside what other maps need.
-MemoryNeed expand_flow_memory(const ExpansionChoice& choice, std::span<const Vec3> vertices,
+MemoryNeed expand_flow_memory(const FlowChoice& choice, int lmax, std::span<const Vec3> vertices,
                               std::span<const Face> faces, const Backend& backend);
 
 /// The star-shape time of a mesh about an origin, as precisely as every command takes it.

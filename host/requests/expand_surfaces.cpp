@@ -19,33 +19,35 @@
 namespace cowgpu {
 namespace {
 
-SphereMap make_map(MapMethod method, bool paper, const ManifoldSurface& surface, Monitor& monitor) {
+SphereMap make_map(MapMethod method, const HarmonicOptions& harmonic, const ManifoldSurface& surface,
+                   Monitor& monitor) {
   if (method == MapMethod::stretch) return stretch_map(surface, {}, monitor);
   if (method == MapMethod::smooth) return smooth_map(surface, {}, monitor);
-  return harmonic_map(surface, paper ? HarmonicOptions::paper_recipe() : HarmonicOptions{}, monitor);
+  return harmonic_map(surface, harmonic, monitor);
 }
 
 SurfaceResult expand_over(MapMethod method, const ExpansionChoice& choice, bool estimate_aliasing, const Body& body,
                           const ManifoldSurface& surface, Backend& backend, Monitor& monitor) {
-  const bool paper = choice.paper && (method == MapMethod::harmonic || method == MapMethod::flow);
+  const bool as_chosen = method == MapMethod::harmonic || method == MapMethod::flow;
+  const MapReading reading = as_chosen ? choice.reading : MapReading{};
   SurfaceResult result;
-  result.recipe = paper ? "paper" : "default";
-  result.origin_kind = paper ? "mesh" : body.origin_kind;
+  result.recipe = reading.recipe;
+  result.origin_kind = reading.mesh_origin ? "mesh" : body.origin_kind;
   result.of = method;
-  result.beside_paper =
-      paper && choice.lmax >= 3 && body.surface.mesh().sha256 == benchmark_sha256 && body.placement.is_identity();
-  if (body.placement.metric) result.length_unit = "metres";
-  const Vec3 origin = paper ? Vec3::Zero() : body.origin;
+  result.beside_paper = reading.beside_paper && choice.lmax >= 3 && body.surface.mesh().sha256 == benchmark_sha256 &&
+                        body.placement.is_identity();
+  if (body.units().stated) result.length_unit = "metres";
+  const Vec3 origin = reading.mesh_origin ? Vec3::Zero() : body.origin;
   const int judged_degree = surface_grid_degree(choice.lmax) / 2;
   if (method == MapMethod::flow) {
     expand_flow(choice, estimate_aliasing, surface, origin, backend, monitor, result);
     result.quality = judge(surface, result.map, judged_degree);
     return result;
   }
-  result.closest_point = paper;
+  result.closest_point = reading.closest_point;
   const auto start = Clock::now();
   if (choice.map_file.empty())
-    result.map = make_map(method, paper, surface, monitor);
+    result.map = make_map(method, choice.harmonic, surface, monitor);
   else {
     const std::string bytes = read_input_file(choice.map_file);
     result.map = read_map(bytes, choice.map_file, surface, method);
@@ -61,9 +63,9 @@ SurfaceResult expand_over(MapMethod method, const ExpansionChoice& choice, bool 
   ExpandSurfaceOptions options;
   options.lmax = choice.lmax;
   options.origin = origin;
-  options.closest_point = paper;
-  options.signed_dphi = !paper;
-  options.estimate_aliasing = estimate_aliasing || paper; // to say how far the paper is from converged values
+  options.closest_point = reading.closest_point;
+  options.signed_dphi = reading.signed_dphi;
+  options.estimate_aliasing = estimate_aliasing || reading.estimate_aliasing;
   result.expansion =
       expand_surface(surface.vertices(), surface.faces(), result.map, options, backend, monitor, &result.report);
   return result;
@@ -79,12 +81,6 @@ void check_expansions(const ExpansionChoice& choice) {
   if (choice.mass) words.emplace_back("mass");
   for (const MapMethod map : choice.maps) words.push_back(name(map));
   const bool flow = asked_for(MapMethod::flow);
-  if (choice.paper && !asked_for(MapMethod::harmonic) && !flow)
-    throw Error(
-        Fault::bad_argument,
-        fmt::format("--recipe paper is about the harmonic map and the flow, and --of {} asks for neither; add --of "
-                    "harmonic or --of flow",
-                    fmt::join(words, ",")));
   if (!choice.map_file.empty() && (choice.maps.size() != 1 || flow))
     throw Error(Fault::bad_argument,
                 fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "
@@ -101,7 +97,7 @@ MemoryNeed surfaces_memory(const ExpansionChoice& choice, std::span<const Vec3> 
   MemoryNeed need = expand_surface_memory(faces.size(), choice.lmax, backend);
   need.host += (choice.maps.size() - 1) * 6 * 16 * SphereCoefficients::count(choice.lmax);
   if (choice.maps.back() == MapMethod::flow) {
-    const MemoryNeed flow = expand_flow_memory(choice, vertices, faces, backend);
+    const MemoryNeed flow = expand_flow_memory(choice.flow, choice.lmax, vertices, faces, backend);
     need.host += flow.host;
     need.device = std::max(need.device, flow.device);
   }

@@ -1,7 +1,10 @@
 #include "host/requests/roundtrip.hpp"
 
 #include "host/clock.hpp"
+#include "host/report/json_parts.hpp"
 #include "host/requests/memory.hpp"
+
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <utility>
@@ -9,6 +12,12 @@
 
 namespace cowgpu {
 namespace {
+
+std::uint64_t peak_resident() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::uint64_t(usage.ru_maxrss) * 1024;
+}
 
 TransformReport median(std::vector<TransformReport> reports) {
   const auto middle = reports.begin() + std::ptrdiff_t(reports.size() / 2);
@@ -22,6 +31,8 @@ TransformReport median(std::vector<TransformReport> reports) {
 RoundtripResult plan_roundtrip(const RoundtripRequest& request, const Backend& backend) {
   const auto start = Clock::now();
   RoundtripResult result;
+  result.created = utc_now();
+  result.request = request;
   result.device = backend.facts();
   result.grid = make_grid(request.grid, request.lmax);
   result.setup_seconds = seconds_since(start);
@@ -54,6 +65,7 @@ RoundtripResult roundtrip(const RoundtripRequest& request, Backend& backend, Mon
   result.analysis = median(std::move(analyses));
   result.error = compare(before, after);
   result.bound = round_trip_bound(request.lmax);
+  result.peak_resident_bytes = peak_resident();
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/shown.hpp"
+#include "host/report/json_parts.hpp"
 #include "host/spectrum/power.hpp"
 
 #include <fmt/format.h>
@@ -12,12 +13,6 @@
 
 namespace cowgpu {
 
-double PowerSpectrum::total() const {
-  double sum = 0;
-  for (const double s : power) sum += s;
-  return sum;
-}
-
 SpectrumResult spectrum(const SpectrumRequest& request) {
   CoefficientFile file = read_coefficients(request.input, request.metres);
   const SphereCoefficients& a = file.coefficients;
@@ -25,6 +20,8 @@ SpectrumResult spectrum(const SpectrumRequest& request) {
   if (request.cross && a.fields != 2)
     throw Error(Fault::bad_argument, fmt::format("--cross takes a file of two fields; {} has {}", input, a.fields));
   SpectrumResult result;
+  result.created = utc_now();
+  result.input = input;
   result.lmax = a.lmax;
   for (int f = 0; f < a.fields; ++f) {
     const std::string& name = file.names[std::size_t(f)];

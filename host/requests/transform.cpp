@@ -2,6 +2,7 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/report/json_parts.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -41,8 +42,9 @@ SphereCoefficients resized(const SphereCoefficients& a, int lmax) {
 template <class Request>
 TransformRun planned_run(const Request& request, const Backend& backend) {
   TransformRun run;
+  run.created = utc_now();
+  run.input = request.name;
   run.plan = plan_transform(request, backend);
-  run.device = backend.facts();
   return run;
 }
 
@@ -50,8 +52,9 @@ TransformRun planned_run(const Request& request, const Backend& backend) {
 
 TransformPlan plan_transform(const AnalyseRequest& request, const Backend& backend) {
   const GridFile& in = request.input;
-  TransformPlan plan{"analysis",         in.grid, request.lmax < 0 ? in.lmax : request.lmax, in.names, in.notes,
-                     request.convention, {}};
+  TransformPlan plan{"analysis",      in.grid,  request.lmax < 0 ? in.lmax : request.lmax,
+                     in.names,        in.notes, request.convention,
+                     backend.facts(), {}};
   if (plan.lmax > in.grid.lmax)
     throw Error(Fault::bad_argument,
                 fmt::format("--lmax {}: the {} rings of {} points of {} give back degrees up to {} "
@@ -70,6 +73,7 @@ TransformPlan plan_transform(const SynthesiseRequest& request, const Backend& ba
                      field_names(in.names, in.coefficients.fields, "value"),
                      in.notes,
                      in.convention,
+                     backend.facts(),
                      {}};
   if (plan.lmax < held) plan.notes.push_back(fmt::format("degrees {} to {} were left out", plan.lmax + 1, held));
   plan.memory = affordable(plan, backend);

@@ -6,8 +6,9 @@
 #include "host/map/sample_fields.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/triangle_surface.hpp"
+#include "host/paper/recipe.hpp"
+#include "host/paper/surface_tables.hpp"
 #include "host/reference/flow.hpp"
-#include "host/spectrum/paper_tables.hpp"
 #include "host/spectrum/power.hpp"
 #include "host/spectrum/surface_fields.hpp"
 #include "host/sphere_directions.hpp"
@@ -206,7 +207,8 @@ TEST_CASE("the paper's recipe gives the paper's table of the flow as near as dis
   if (!cow) return skip_without_cow();
   const auto backend = make_cpu_backend();
   Monitor monitor;
-  const SphereMap map = paper_flow_map(cow->mesh(), Vec3::Zero(), *backend, monitor);
+  const SphereMap map =
+      stepped_flow_map(cow->mesh(), Vec3::Zero(), paper::flow_time, paper::flow_step, *backend, monitor);
   ExpandSurfaceOptions options;
   options.lmax = 32;
   options.closest_point = true;
@@ -220,7 +222,9 @@ TEST_CASE("the paper's recipe gives the paper's table of the flow as near as dis
   CHECK(std::abs(expansion.coefficients.at(0, 0, 0).real() - 1.0750) <= 0.01);
 }
 
-TEST_CASE("signed sheets of the benchmark at 0.2 tend to a monopole of 1.092", "[flow_map][benchmark]") {
+namespace {
+
+void check_sheets_of_the_benchmark(int refinements) {
   const auto cow = benchmark_cow();
   if (!cow) return skip_without_cow();
   const auto backend = make_cpu_backend();
@@ -228,17 +232,27 @@ TEST_CASE("signed sheets of the benchmark at 0.2 tend to a monopole of 1.092", "
   const auto flow = make_cpu_backend()->distance_flow(cow->vertices(), cow->faces());
   ExpandSurfaceOptions options;
   options.lmax = 64;
-  const SheetExpansion found = expand_sheets(cow->mesh(), 0.2, 2, 1e-6, options, *flow, *backend, monitor);
-  REQUIRE(found.levels.size() == 3);
+  const SheetExpansion found = expand_sheets(cow->mesh(), 0.2, refinements, 1e-6, options, *flow, *backend, monitor);
+  REQUIRE(found.levels.size() == std::size_t(refinements) + 1);
   const double expected[3] = {1.0744, 1.0848, 1.0883};
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < found.levels.size(); ++k) {
     CHECK(found.levels[k].at(0, 0, 0).real() == Approx(expected[k]).margin(5e-4));
     CHECK(std::abs(found.sheets[k].least_degree - 1) < 1e-12);
     CHECK(std::abs(found.sheets[k].largest_degree - 1) < 1e-12);
   }
   CHECK(found.sheets[0].flipped_faces > 1800);
-  CHECK(found.expansion.coefficients.at(0, 0, 0).real() == Approx(1.092).margin(1e-3));
+  CHECK(found.expansion.coefficients.at(0, 0, 0).real() == Approx(1.092).margin(refinements > 1 ? 1e-3 : 5e-3));
   CHECK(found.uncertainty[0][0] > 0);
+}
+
+} // namespace
+
+TEST_CASE("signed sheets of the benchmark at 0.2 have the monopoles that were found before", "[flow_map][benchmark]") {
+  check_sheets_of_the_benchmark(1);
+}
+
+TEST_CASE("signed sheets of the benchmark at 0.2 tend to a monopole of 1.092", "[flow_map][benchmark][long]") {
+  check_sheets_of_the_benchmark(2);
 }
 
 TEST_CASE("signed sheets of the benchmark at 0.2 are known to 1e-3 up to degree 8 from four refinements",

@@ -4,6 +4,7 @@
 #include "host/map/quality.hpp"
 #include "host/map/smooth.hpp"
 #include "host/mesh/builtin.hpp"
+#include "host/paper/recipe.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -178,7 +179,7 @@ TEST_CASE("the harmonic map keeps angles by default, and does not without polish
   const SphereMap uneven = harmonic_map(body, options);
   CHECK(std::any_of(uneven.notes.begin(), uneven.notes.end(),
                     [](const std::string& note) { return note.starts_with("not polished"); }));
-  CHECK_FALSE(HarmonicOptions::paper_recipe().polish.value_or(true));
+  CHECK_FALSE(paper::harmonic_map().polish.value_or(true));
 }
 
 TEST_CASE("maps are refused for surfaces that are not one sphere", "[harmonic][smooth]") {

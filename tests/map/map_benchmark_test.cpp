@@ -2,6 +2,7 @@
 #include "host/map/harmonic.hpp"
 #include "host/map/quality.hpp"
 #include "host/map/smooth.hpp"
+#include "host/paper/recipe.hpp"
 #include "host/sphere_grid.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/meshes.hpp"
@@ -40,7 +41,7 @@ TEST_CASE("the paper's recipe deletes vertex 408 and lays the benchmark cow out 
   if (!cow) return skip_without_cow();
   const auto surface = ManifoldSurface::from(*cow);
   CHECK(pole_vertex(surface, {}) == 408);
-  const SphereMap map = harmonic_map(surface, HarmonicOptions::paper_recipe());
+  const SphereMap map = harmonic_map(surface, paper::harmonic_map());
   CHECK(map.positions[408] == Vec3(0, 0, -1));
   // The circle of radius 10, in the order of recipes: azimuths grow.
   double before = -1;
@@ -60,7 +61,7 @@ TEST_CASE("the paper's recipe gives the paper's radial coefficients", "[harmonic
   const auto cow = benchmark_cow();
   if (!cow) return skip_without_cow();
   const auto surface = ManifoldSurface::from(*cow);
-  const SphereMap map = harmonic_map(surface, HarmonicOptions::paper_recipe());
+  const SphereMap map = harmonic_map(surface, paper::harmonic_map());
   struct Row {
     int l, m;
     std::complex<double> paper;

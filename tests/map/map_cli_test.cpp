@@ -5,6 +5,7 @@
 #include "host/map/harmonic.hpp"
 #include "host/map/quality.hpp"
 #include "host/map/stretch.hpp"
+#include "host/paper/recipe.hpp"
 #include "host/report/map_report.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/run_program.hpp"
@@ -210,7 +211,7 @@ TEST_CASE("the JSON of a map holds the findings of judge()", "[map-cli]") {
   REQUIRE(run.exit_code == 0);
   const auto json = nlohmann::json::parse(run.out);
   const auto surface = manifold(load_mesh("builtin:cow@1"));
-  const MapQuality want = judge(surface, harmonic_map(surface, HarmonicOptions::paper_recipe()), 32);
+  const MapQuality want = judge(surface, harmonic_map(surface, paper::harmonic_map()), 32);
   CHECK(json["schema"] == "cowgpu.map.v1");
   CHECK(json["method"] == "harmonic");
   CHECK(json["output"].is_null());
@@ -267,12 +268,10 @@ TEST_CASE("infinite shear is null in the JSON of a map, and flat triangles are l
   for (Vec3& p : map.positions) p.normalize();
   const Face& face = surface.faces()[9];
   map.positions[face[0]] = map.positions[face[1]];
-  MapReport report;
-  report.mesh = &surface.closed().mesh();
-  report.map = &map;
+  MapResult report{surface, map};
   report.quality = judge(surface, map, 4);
   std::string text, screen;
-  write_json(report, [&](std::string_view part) { text += part; });
+  write_json(report, {}, [&](std::string_view part) { text += part; });
   write_screen(report, [&](std::string_view part) { screen += part; });
   const auto quality = nlohmann::json::parse(text)["quality"];
   CHECK(quality["shear"]["values"].back().is_null());

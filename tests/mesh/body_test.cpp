@@ -3,7 +3,7 @@
 #include "host/mesh/body.hpp"
 #include "host/mesh/tensors.hpp"
 #include "host/spectrum/rotation.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/mass/verify.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>
@@ -107,7 +107,7 @@ TEST_CASE("parts that cancel have no centre of mass, and need an origin", "[body
 }
 
 TEST_CASE("metres: moments scale by L^(3 + l), tensors by L^5, the rest with them", "[body]") {
-  const Placement unit{0.3048, true, Eigen::Matrix3d::Identity()};
+  const Placement unit{{0.3048, 1, true}, Eigen::Matrix3d::Identity()};
   const Body feet = make_body(mesh("builtin:cow@1"), {}, 1000),
              metres = make_body(mesh("builtin:cow@1", unit), {}, 1000);
   const double l3 = std::pow(0.3048, 3), l5 = std::pow(0.3048, 5);
@@ -121,7 +121,7 @@ TEST_CASE("metres: moments scale by L^(3 + l), tensors by L^5, the rest with the
 
 TEST_CASE("a body that is turned has moments that are turned by Wigner's matrices", "[body]") {
   const double a = 0.3, b = 1.1, c = -2.5;
-  const Placement turned{1, false, turn(a, b, c)};
+  const Placement turned{{}, turn(a, b, c)};
   const OriginChoice origin{"mesh", Vec3::Zero()};
   const Multipoles q = moments(make_body(mesh("builtin:cow@1"), origin, 1), 24);
   const Multipoles direct = moments(make_body(mesh("builtin:cow@1", turned), origin, 1), 24);
@@ -143,7 +143,7 @@ TEST_CASE("axes are named anew without rounding", "[body]") {
   CHECK((r * Vec3(1, 2, 3) - Vec3(1, -3, 2)).norm() == 0);
   RawMesh mesh = load_mesh("builtin:cow@1");
   const std::vector<Vec3> before = mesh.vertices;
-  place(mesh, {1, false, r});
+  place(mesh, {{}, r});
   bool same = true;
   for (std::size_t i = 0; i < before.size(); ++i)
     same = same && mesh.vertices[i] == Vec3(before[i].x(), -before[i].z(), before[i].y());

@@ -111,7 +111,7 @@ TEST_CASE("duplicate faces are called that", "[mend][hint]") {
 TEST_CASE("the tolerance that mends a mesh is in the unit of its file", "[mend][hint]") {
   RawMesh mesh = loosened(box({2, 1, 3}), 1e-7);
   Placement millimetres;
-  millimetres.scale = 1e-3;
+  millimetres.units.metre = 1e-3;
   const Outcome refused = outcome_of([&] { place(mesh, millimetres); });
   CHECK(refused.fault == "mesh-open");
   CHECK(refused.says("--weld 1e-6 "));

@@ -8,7 +8,7 @@
 #include "host/mesh/tensors.hpp"
 #include "host/plan/moments.hpp"
 #include "host/reference/moments.hpp"
-#include "host/spectrum/verify.hpp"
+#include "host/mass/verify.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/cpu_with_a_fault.hpp"
 #include "tests/support/fields.hpp"

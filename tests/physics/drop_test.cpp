@@ -17,7 +17,7 @@ using Real = long double;
 constexpr double pi = std::numbers::pi;
 const std::vector<Vec3> corners = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 
-DropProblem problem_of(const MassiveBody& body, double height) {
+DropProblem problem_of(const RigidBody& body, double height) {
   DropProblem problem;
   problem.body = body;
   problem.height = height;
@@ -196,7 +196,7 @@ TEST_CASE("a fall tells how far it is, and stops where it is told to", "[drop]")
 }
 
 TEST_CASE("a body that touches already, or has no surface, is refused", "[drop]") {
-  const MassiveBody body = body_with({1, 1.4, 1.9});
+  const RigidBody body = body_with({1, 1.4, 1.9});
   CHECK_THROWS_AS(drop(problem_of(body, 1)), Error);
   CHECK_THROWS_AS(drop(problem_of(body, 0.5)), Error);
   CHECK_THROWS_AS(drop(problem_of(body, -3)), Error);

@@ -37,8 +37,8 @@ LongMat3 exponential(const LongVec3& turn) {
 }
 
 // The full equations of a rigid body on a circular orbit: attitude as (1 + w, v), angular velocity in the body's axes.
-State moved(const MassiveBody& body, const Orbit& orbit, const LongVec3& turn, const LongVec3& omega, Real time) {
-  const LongMat3 inertia = body.inertia.cast<Real>(), inverse = inertia.inverse();
+State moved(const RigidBody& body, const Orbit& orbit, const LongVec3& turn, const LongVec3& omega, Real time) {
+  const LongMat3 inertia = body.inertia().cast<Real>(), inverse = inertia.inverse();
   const Eigen::Quaternion<Real> start(exponential(turn));
   State y(7);
   y << start.w() - 1, start.vec(), omega;
@@ -61,14 +61,14 @@ LongVec3 turned_by(const State& y, const Orbit& orbit, Real time) {
   return LongVec3(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)) / 2;
 }
 
-Orbit low_orbit(const MassiveBody& body) {
+Orbit low_orbit(const RigidBody& body) {
   return circular_orbit(earth, body, 7e6);
 }
 
 } // namespace
 
 TEST_CASE("force, torque and energy of point masses are Newton's to all orders", "[tides]") {
-  const MassiveBody body = body_of(tripod, 40);
+  const RigidBody body = body_of(tripod, 40);
   const double mass = 6;
   for (const Vec3& direction : {Vec3(1, 2, 3), Vec3(-3, 0.1, 1), Vec3(0, 0, 5), Vec3(0, 4, 0)}) {
     const LongVec3 x = 6 * direction.normalized().cast<Real>();
@@ -100,7 +100,7 @@ TEST_CASE("each degree brings the torque of a dumbbell nearer by (R/r)", "[tides
 TEST_CASE("the torque of degree 2 is 3 GM/r^3 x cross I x, greatest at 45 degrees", "[tides]") {
   const Body box = make_body(ClosedSurface::from(test::box(Vec3(1, 2, 3), Vec3(4, 5, 6))), {}, 2);
   Monitor monitor;
-  MassiveBody body = massive_body(box, 2, monitor);
+  RigidBody body = free_body(box, 2, monitor);
   body.radius = 2;
   const double mass = 12, a = mass * 5 / 12, b = mass * 10 / 12, c = mass * 13 / 12; // about z, y, x
   const Orbit orbit = circular_orbit({"", 3e14, 0}, body, 8e6);
@@ -118,7 +118,7 @@ TEST_CASE("small librations of the full equations have the periods of the quarti
   // A Lagrangian body with axes of all sorts, and one that only its spin holds (DeBra and Delp).
   for (const auto& [moments, kind] :
        {std::pair(Vec3(1, 1.4, 1.9), Stability::lagrange), std::pair(Vec3(1.02, 1.9, 1), Stability::debra_delp)}) {
-    const MassiveBody body = body_with(moments);
+    const RigidBody body = body_with(moments);
     const Orbit orbit = low_orbit(body);
     std::array<int, 3> along = kind == Stability::lagrange ? std::array{0, 1, 2} : std::array{1, 2, 0};
     const Vec3 rising = kind == Stability::lagrange ? moments : Vec3(1, 1.02, 1.9);
@@ -147,7 +147,7 @@ TEST_CASE("small librations of the full equations have the periods of the quarti
 
 TEST_CASE("stability of the six attitudes: one for good, and gyroscopic ones only where DeBra and Delp's region is",
           "[tides]") {
-  const MassiveBody body = body_with({1, 1.4, 1.9});
+  const RigidBody body = body_with({1, 1.4, 1.9});
   const Orbit orbit = low_orbit(body);
   int lagrange = 0, gyroscopic = 0;
   for (const Libration& one : relative_equilibria(axes_of({1, 1.4, 1.9}), orbit)) {
@@ -165,7 +165,7 @@ TEST_CASE("stability of the six attitudes: one for good, and gyroscopic ones onl
 TEST_CASE("an attitude that is called unstable is left, one that is called stable is kept, for twenty orbits",
           "[tides]") {
   for (const Vec3& moments : {Vec3(1.4, 1, 1.9), Vec3(1, 1.9, 1.4), Vec3(1, 1.4, 1.9), Vec3(1.02, 1.9, 1)}) {
-    const MassiveBody body = body_with(moments);
+    const RigidBody body = body_with(moments);
     const Orbit orbit = low_orbit(body);
     std::array<int, 3> along = {};
     Vec3 rising = moments;
@@ -227,11 +227,11 @@ TEST_CASE("a symmetric body is neutral about its axis, and a ball librates nowhe
 }
 
 TEST_CASE("higher degrees shift the attitude at rest to where Newton's torque holds the body", "[tides]") {
-  const MassiveBody body = body_of(tripod, 40);
+  const RigidBody body = body_of(tripod, 40);
   const Orbit orbit = circular_orbit({"", 1, 0}, body, 9);
-  MassTensors tensors;
+  RigidBody tensors;
   tensors.quadrupole = body.quadrupole;
-  tensors.trace = body.inertia.trace() / 2;
+  tensors.trace = body.inertia().trace() / 2;
   const PrincipalAxes principal = principal_axes(tensors);
   for (const LongVec3& half : {LongVec3(1, 1, 1), LongVec3(-1, 1, -1), LongVec3(1, -1, -1), LongVec3(-1, -1, 1)}) {
     const LongMat3 axes = principal.axes.cast<Real>(), start = LongMat3(half.asDiagonal()) * axes.transpose();
@@ -240,7 +240,7 @@ TEST_CASE("higher degrees shift the attitude at rest to where Newton's torque ho
     const LongMat3 to_body = found.attitude.transpose();
     const LongVec3 z = to_body.col(2), x = -9 * to_body.col(0);
     const Real n = orbit.rate;
-    const LongVec3 turning = n * n * z.cross(LongVec3(body.inertia.cast<Real>() * z));
+    const LongVec3 turning = n * n * z.cross(LongVec3(body.inertia().cast<Real>() * z));
     const LongVec3 rest = newton(tripod, 1, x).torque - turning;
     CHECK(double(rest.norm()) < 1e-13 * largest_quadrupole_torque(principal, orbit));
     CHECK(double(found.shift.norm()) > 1e-3);
@@ -252,7 +252,7 @@ TEST_CASE("higher degrees shift the attitude at rest to where Newton's torque ho
 }
 
 TEST_CASE("a spin within the half width of capture librates, one beyond it goes on round", "[tides]") {
-  const MassiveBody body = body_with({1, 1.4, 1.9});
+  const RigidBody body = body_with({1, 1.4, 1.9});
   const Orbit orbit = low_orbit(body);
   const double half = capture_half_width(axes_of({1, 1.4, 1.9}), orbit);
   CHECK(half == Approx(orbit.rate * std::sqrt(3 * 0.4 / 1.9)).epsilon(1e-13));
@@ -273,7 +273,7 @@ TEST_CASE("a spin within the half width of capture librates, one beyond it goes 
 
 TEST_CASE("the time to lock is omega r^6 I Q/(3 G M^2 k2 R^5)", "[tides]") {
   const double mass = 7.3e22, radius = 1.7e6, distance = 3.8e8, m = earth.mass();
-  const MassiveBody body = body_with(Vec3::Constant(0.4 * mass * radius * radius), mass);
+  const RigidBody body = body_with(Vec3::Constant(0.4 * mass * radius * radius), mass);
   const Orbit orbit = circular_orbit(earth, body, distance);
   CHECK(orbit.rate == Approx(std::sqrt(gravitational_constant_si * (m + mass) / std::pow(distance, 3))).epsilon(1e-13));
   const double expected = 1e-4 * std::pow(distance, 6) * 0.4 * mass * radius * radius * 30 /
@@ -289,7 +289,7 @@ TEST_CASE("the time to lock is omega r^6 I Q/(3 G M^2 k2 R^5)", "[tides]") {
 }
 
 TEST_CASE("orbits through the body, of no size or about nothing are refused", "[tides]") {
-  const MassiveBody body = body_with({1, 1.4, 1.9});
+  const RigidBody body = body_with({1, 1.4, 1.9});
   CHECK_THROWS_AS(circular_orbit(earth, body, body.radius), Error);
   CHECK_THROWS_AS(circular_orbit(earth, body, -1), Error);
   CHECK_THROWS_AS(circular_orbit({"", 0, 0}, body, 1e7), Error);

@@ -14,8 +14,8 @@ using Catch::Contains;
 
 namespace {
 
-TipBody body_of(RawMesh mesh, double density = 1) {
-  return tip_body(make_body(ClosedSurface::from(std::move(mesh)), {}, density));
+RigidBody body_of(RawMesh mesh, double density = 1) {
+  return solid_body(make_body(ClosedSurface::from(std::move(mesh)), {}, density));
 }
 
 TriangleSurface surface_of(const RawMesh& mesh) {
@@ -25,9 +25,9 @@ TriangleSurface surface_of(const RawMesh& mesh) {
   return surface;
 }
 
-TipBody smooth_body(const RawMesh& mesh, double mass = 1) {
+RigidBody smooth_body(const RawMesh& mesh, double mass = 1) {
   std::string note;
-  return tip_body(surface_of(mesh), mass, note);
+  return physics::smooth_body(surface_of(mesh), mass, note);
 }
 
 void check_point(const Vec3& found, const Vec3& expected, double tolerance = 1e-12) {
@@ -35,7 +35,7 @@ void check_point(const Vec3& found, const Vec3& expected, double tolerance = 1e-
   CHECK((found - expected).norm() < tolerance);
 }
 
-void cannot_stand(TipBody body, const StandOptions& how, const char* word) {
+void cannot_stand(RigidBody body, const StandOptions& how, const char* word) {
   try {
     stand(std::move(body), how);
     FAIL("it stands");
@@ -80,7 +80,7 @@ TEST_CASE("with friction's torque the balance about the barycentre is that about
     const Stance stance = stand(body_of(convex_polyhedron(random, 20, 40)), {});
     for (const Side side : {Side::left, Side::right}) {
       const Tipping t = tipping(stance, side);
-      const Vec3 &b = stance.body.barycentre, push = t.force * t.direction;
+      const Vec3 &b = stance.body.centre, push = t.force * t.direction;
       const double normal = 1 - push.y(), friction = -push.z();
       const Vec3 ground(0, normal, friction);
       const double torque = ((t.point - b).cross(push) + (t.pivot - b).cross(ground)).x();
@@ -152,11 +152,11 @@ TEST_CASE("a smooth body on two feet tips about the outer one", "[tip]") {
 
 TEST_CASE("a surface that is inside out is turned, and an order keeps the mass of the whole", "[tip]") {
   std::string note;
-  const TipBody turned = tip_body(surface_of(flipped(box({1, 2, 3}))), 12, note);
+  const RigidBody turned = physics::smooth_body(surface_of(flipped(box({1, 2, 3}))), 12, note);
   CHECK(note == "inside out; turned");
   CHECK(turned.mass == Approx(12).epsilon(1e-15));
-  check_point(turned.barycentre, {0.5, 1, 1.5});
-  CHECK(turned.inertia(0, 0) == Approx(13).epsilon(1e-14));
+  check_point(turned.centre, {0.5, 1, 1.5});
+  CHECK(turned.inertia()(0, 0) == Approx(13).epsilon(1e-14));
 }
 
 TEST_CASE("a body whose barycentre hangs over cannot stand as modelled, but settles", "[tip]") {
@@ -177,8 +177,8 @@ TEST_CASE("parts count in the mass, the contact and the point of the push", "[ti
   std::vector<Part> parts;
   parts.emplace_back(ClosedSurface::from(box({2, 1, 1}, {-1, 1, -2})), 8);
   const Body body = make_body(std::move(slab), {}, 1, std::move(parts));
-  const Stance stance = stand(tip_body(body), {});
-  check_point(stance.body.barycentre, {0, 1.16666666666666667, -1});
+  const Stance stance = stand(solid_body(body), {});
+  check_point(stance.body.centre, {0, 1.16666666666666667, -1});
   CHECK(stance.body.mass == Approx(24).epsilon(1e-15));
   const Tipping right = tipping(stance, Side::right);
   CHECK(right.offset == Approx(3).epsilon(1e-13));
@@ -196,7 +196,7 @@ TEST_CASE("a hole takes mass away and holds nothing: the body does not stand on 
     std::vector<Part> parts;
     parts.emplace_back(ClosedSurface::from(box({0.5, 0.5, 0.5}, corner)), -0.01);
     const Body body = make_body(ClosedSurface::from(box({1, 2, 3}, -half)), {}, 1, std::move(parts));
-    const Stance stance = stand(tip_body(body), {});
+    const Stance stance = stand(solid_body(body), {});
     INFO(corner.transpose());
     CHECK(stance.body.mass == Approx(6 - 0.01 / 8).epsilon(1e-15));
     CHECK(stance.contact.ground == -1);
@@ -224,7 +224,7 @@ TEST_CASE("the benchmark as modelled takes 1.4 to 1.8 kN by contact patch, as th
   const auto cow = benchmark_cow();
   if (!cow) return skip_without_cow();
   const double unit = 2.39;
-  const TipBody body = body_of(scaled(cow->mesh(), {unit, unit, unit}), 1000);
+  const RigidBody body = body_of(scaled(cow->mesh(), {unit, unit, unit}), 1000);
   const double weight = body.mass * standard_gravity;
   CHECK(weight == Approx(7159.87).epsilon(1e-5));
   const auto newtons = [&](double tolerance) {
@@ -241,6 +241,6 @@ TEST_CASE("the benchmark as modelled takes 1.4 to 1.8 kN by contact patch, as th
   const Tipping t = tipping(settled, Side::right);
   CHECK(t.force * weight == Approx(1443.75).epsilon(1e-4));
   // The literal arm counts the hind hooves' offset of 0.27 fore and aft.
-  CHECK(std::abs(t.support.x() - settled.body.barycentre.x()) > 0.26 * unit);
+  CHECK(std::abs(t.support.x() - settled.body.centre.x()) > 0.26 * unit);
   CHECK(*t.force_paper_literal > 1.8 * t.force_paper_balance);
 }

@@ -44,19 +44,19 @@ TEST_CASE("the unit of a printed number's last digit", "[reproduce]") {
 }
 
 TEST_CASE("a number agrees with the paper's where it rounds to its digits", "[reproduce]") {
-  CHECK(compared("t", "i", {"0.0152"}, {0.015249}, "why", "").verdict == Verdict::agrees);
-  CHECK(compared("t", "i", {"0.0152"}, {0.015251}, "why", "").verdict == Verdict::differs);
-  CHECK(compared("t", "i", {"-2e3"}, {-1600}, "why", "").verdict == Verdict::agrees);
-  CHECK(compared("t", "i", {"1.0"}, {std::nan("")}, "why", "").verdict == Verdict::differs);
-  const Row row = compared("t", "i", {"0.1", "-0.25"}, {0.13, -0.21}, "why", "");
+  CHECK(compared({"t", "i", {"0.0152"}, "", "why"}, {0.015249}, "").verdict == Verdict::agrees);
+  CHECK(compared({"t", "i", {"0.0152"}, "", "why"}, {0.015251}, "").verdict == Verdict::differs);
+  CHECK(compared({"t", "i", {"-2e3"}, "", "why"}, {-1600}, "").verdict == Verdict::agrees);
+  CHECK(compared({"t", "i", {"1.0"}, "", "why"}, {std::nan("")}, "").verdict == Verdict::differs);
+  const Row row = compared({"t", "i", {"0.1", "-0.25"}, "", "why"}, {0.13, -0.21}, "");
   CHECK(row.printed == "0.1 - 0.25i");
   CHECK(row.verdict == Verdict::differs);
   CHECK(row.reason == "why");
   CHECK(*row.difference == Approx(0.05));
-  const Row none = compared("t", "i", {"0.1"}, {}, "why", "");
+  const Row none = compared({"t", "i", {"0.1"}, "", "why"}, {}, "");
   CHECK(none.verdict == Verdict::not_computed);
   CHECK_FALSE(none.difference.has_value());
-  CHECK(compared("t", "i", {"0.1", "0.2"}, {1}, "", "").verdict == Verdict::not_computed);
+  CHECK(compared({"t", "i", {"0.1", "0.2"}, "", ""}, {1}, "").verdict == Verdict::not_computed);
 }
 
 TEST_CASE("without the stages' files every number of the paper is listed as not computed", "[reproduce]") {
@@ -70,7 +70,7 @@ TEST_CASE("without the stages' files every number of the paper is listed as not 
 }
 
 TEST_CASE("of another body nothing is compared", "[reproduce]") {
-  std::vector<Row> rows = {compared("t", "i", {"1"}, {1}, "", ""), compared("t", "i", {"1"}, {}, "", "")};
+  std::vector<Row> rows = {compared({"t", "i", {"1"}, "", ""}, {1}, ""), compared({"t", "i", {"1"}, "", ""}, {}, "")};
   not_the_papers_body(rows, "a horse");
   CHECK(rows[0].verdict == Verdict::not_compared);
   CHECK(rows[0].reason == "ours is of a horse");

@@ -5,7 +5,8 @@
 #include "host/map/smooth.hpp"
 #include "host/map/stretch.hpp"
 #include "host/mesh/builtin.hpp"
-#include "host/spectrum/paper_tables.hpp"
+#include "host/paper/recipe.hpp"
+#include "host/paper/surface_tables.hpp"
 #include "host/spectrum/rotation.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/meshes.hpp"
@@ -300,7 +301,7 @@ TEST_CASE("maps of another mesh and degrees out of range are refused", "[expand_
 TEST_CASE("the paper's recipe gives the paper's table of the harmonic map", "[expand_surface][benchmark]") {
   const auto cow = benchmark_cow();
   if (!cow) return skip_without_cow();
-  const SphereMap map = harmonic_map(ManifoldSurface::from(*cow), HarmonicOptions::paper_recipe());
+  const SphereMap map = harmonic_map(ManifoldSurface::from(*cow), paper::harmonic_map());
   ExpandSurfaceOptions options;
   options.lmax = 3;
   options.closest_point = true;

@@ -4,6 +4,7 @@
 #include "host/requests/convert.hpp"
 #include "host/requests/diff.hpp"
 #include "host/requests/expand.hpp"
+#include "host/requests/paper_recipe.hpp"
 #include "host/requests/reconstruct.hpp"
 #include "host/requests/roundtrip.hpp"
 #include "host/requests/spectrum.hpp"
@@ -57,8 +58,8 @@ TEST_CASE("a call expands mass and surface, and another rebuilds order 7", "[req
 
 TEST_CASE("an expansion that makes no sense is refused by the call too", "[requests][expand]") {
   ExpansionChoice paper;
-  paper.mass = paper.paper = true;
-  CHECK_THROWS_AS(expand_ellipsoid(paper), Error);
+  paper.mass = true;
+  CHECK_THROWS_AS(take_paper_recipe(paper), Error); // it is about the harmonic map and the flow
   ExpansionChoice file = all_expansions(4);
   file.map_file = "map.ply";
   CHECK_THROWS_AS(expand_ellipsoid(file), Error);

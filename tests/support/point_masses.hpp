@@ -41,8 +41,8 @@ inline Multipoles moments_of(const std::vector<Point>& points, int lmax) {
 
 /// About their centre of mass, which is the origin; each a ball of `own` m^2 times its mass as integral of r^2, so that rods have
 /// a moment of inertia about themselves.
-inline physics::MassiveBody body_of(const std::vector<Point>& points, int order, double own = 0.01) {
-  physics::MassTensors t;
+inline physics::RigidBody body_of(const std::vector<Point>& points, int order, double own = 0.01) {
+  physics::RigidBody t;
   t.trace = 0;
   for (const Point& p : points) {
     t.mass += p.mass;
@@ -50,9 +50,8 @@ inline physics::MassiveBody body_of(const std::vector<Point>& points, int order,
     t.quadrupole += p.mass * (3 * p.place * p.place.transpose() - p.place.squaredNorm() * Eigen::Matrix3d::Identity());
     t.radius = std::max(t.radius, p.place.norm());
   }
-  t.length_unit = "m";
-  t.mass_unit = "kg";
-  return physics::massive_body(t, moments_of(points, order), order);
+  t.units.stated = true;
+  return physics::with_moments(t, moments_of(points, order), order);
 }
 
 /// Newton's force and torque of a point mass at x on the points, degree 0 included.
@@ -70,15 +69,14 @@ inline physics::Pull newton(const std::vector<Point>& points, long double gm, co
 }
 
 /// A body with these principal moments of inertia along x, y and z.
-inline physics::MassiveBody body_with(const Vec3& moments, double mass = 1) {
-  physics::MassTensors t;
+inline physics::RigidBody body_with(const Vec3& moments, double mass = 1) {
+  physics::RigidBody t;
   t.mass = mass;
   t.trace = moments.sum() / 2;
   t.quadrupole = Eigen::Matrix3d(Vec3(Vec3::Constant(moments.sum()) - 3 * moments).asDiagonal());
   t.radius = std::sqrt(*t.trace / mass);
-  t.length_unit = "m";
-  t.mass_unit = "kg";
-  return physics::massive_body(t, {}, 2);
+  t.units.stated = true;
+  return physics::with_moments(t, {}, 2);
 }
 
 } // namespace cowgpu::test

@@ -11,6 +11,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -92,10 +93,10 @@ private:
 
 } // namespace
 
-TEST_CASE("every layout of a transform gives the same result", "[transform][vulkan]") {
-  const auto plain = gpu_backend();
-  if (!plain) return skip_without_gpu();
-  const GpuOptions layouts[] = {
+namespace {
+
+std::vector<GpuOptions> transform_layouts() {
+  return {
       with([](GpuOptions& o) { o.transform_steps = 8; }),
       with([](GpuOptions& o) { o.transform_steps = 64, o.transform_rings = 2, o.transform_pairs = 2; }),
       with([](GpuOptions& o) { o.transform_rings = 8, o.transform_pairs = 24; }),
@@ -104,8 +105,14 @@ TEST_CASE("every layout of a transform gives the same result", "[transform][vulk
       with([](GpuOptions& o) { o.transform_binding = 1 << 16, o.transform_pairs = 8, o.private_ring_points = 0; }),
       with([](GpuOptions& o) { o.private_ring_points = 0; }),
   };
-  for (const GridKind kind : {GridKind::gauss_legendre, GridKind::driscoll_healy, GridKind::fejer})
-    for (const int fields : {1, 5}) {
+}
+
+void check_layouts(std::span<const GpuOptions> layouts, std::initializer_list<GridKind> grid_kinds,
+                   std::initializer_list<int> field_counts) {
+  const auto plain = gpu_backend();
+  if (!plain) return skip_without_gpu();
+  for (const GridKind kind : grid_kinds)
+    for (const int fields : field_counts) {
       const SphereGrid grid = make_grid(kind, 100);
       const Both expected = both(*plain, grid, 97, fields);
       for (const GpuOptions& options : layouts) {
@@ -120,6 +127,17 @@ TEST_CASE("every layout of a transform gives the same result", "[transform][vulk
       }
     }
   CHECK(plain->validation_messages() == std::vector<std::string>{});
+}
+
+} // namespace
+
+TEST_CASE("layouts of a transform that differ in everything give the same result", "[transform][vulkan]") {
+  const auto layouts = transform_layouts();
+  check_layouts(std::array{layouts[1], layouts[5]}, {GridKind::driscoll_healy}, {5});
+}
+
+TEST_CASE("every layout of a transform gives the same result", "[transform][vulkan][long]") {
+  check_layouts(transform_layouts(), {GridKind::gauss_legendre, GridKind::driscoll_healy, GridKind::fejer}, {1, 5});
 }
 
 TEST_CASE("a synthesis keeps its bits however the rings are cut", "[transform][vulkan]") {
@@ -158,18 +176,30 @@ TEST_CASE("a transform gives the same bits again, whatever ran between", "[trans
   CHECK(backend->validation_messages() == std::vector<std::string>{});
 }
 
-TEST_CASE("rings of any length are transformed", "[transform][vulkan]") {
+namespace {
+
+void check_ring_lengths(std::initializer_list<int> lengths) {
   const auto backend = gpu_backend();
   if (!backend) return skip_without_gpu();
-  // Primes, squares and products of them, odd and even, beside the lengths that have butterflies of their own.
-  for (const int length : {41,  43,  49,  54,  77,   97,   121,  125,  127,  128,  160,
-                           243, 251, 257, 343, 1021, 2048, 2187, 4096, 4099, 6000, 8192}) {
+  for (const int length : lengths) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, 21, length);
     const auto transform = backend->sphere_transform(grid, 20);
     INFO("ring length " << length);
     check_at_most(round_trip(*transform, 2), 2e-14, "round trip");
   }
   CHECK(backend->validation_messages() == std::vector<std::string>{});
+}
+
+} // namespace
+
+TEST_CASE("rings of a prime, a square and a long length are transformed", "[transform][vulkan]") {
+  check_ring_lengths({43, 121, 4096});
+}
+
+// Primes, squares and products of them, odd and even, beside the lengths that have butterflies of their own.
+TEST_CASE("rings of any length are transformed", "[transform][vulkan][long]") {
+  check_ring_lengths(
+      {41, 43, 49, 54, 77, 97, 121, 125, 127, 128, 160, 243, 251, 257, 343, 1021, 2048, 2187, 4096, 4099, 6000, 8192});
 }
 
 TEST_CASE("a smaller budget of iterations cuts the rings finer, or is refused", "[transform][vulkan]") {

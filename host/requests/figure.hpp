@@ -1,0 +1,51 @@
+// A figure of "Higher multipoles of the cow", or one that it lacks, of any body.
+#pragma once
+
+#include "host/backend.hpp"
+#include "host/figures/figures.hpp"
+#include "host/requests/expand_surfaces.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cowgpu {
+
+enum class FigureKind {
+  spectra,     ///< power by degree, of expansions and of the mass
+  orders,      ///< orders 0 to 7 of one map, and the body
+  components,  ///< the components of f over one map, on the body and on the sphere
+  definition,  ///< what f is, over one map
+  inflation,   ///< level sets of the distance
+  streamlines, ///< streamlines of its flow
+  tipping      ///< a ball and the body, and what tips them
+};
+
+/// Whether a figure is lines alone, so that it can be an SVG too.
+bool lines_alone(FigureKind kind);
+
+struct FigureRequest {
+  FigureKind kind = FigureKind::spectra;
+  plot::PictureFormat format = plot::PictureFormat::png;
+  RawMesh mesh;
+  /// The expansions that are shown, of one map but for spectra. Its degree is also that of the mass.
+  ExpansionChoice expansions;
+  /// Of spectra, maps that cannot be made are left out.
+  bool leave_out = false;
+  /// Result files of the mesh instead of expansions: one for orders, any number for spectra.
+  std::vector<std::string> results;
+  View view = {28, 14};
+  Plane plane;                   ///< plane of streamlines
+  std::size_t streamlines = 240; ///< how many
+};
+
+struct FigureResult {
+  plot::Canvas page;
+  std::vector<std::string> left_out; ///< sentences: which maps, and why
+};
+
+/// Throws Error(bad_argument) for a figure of one map with several, file_format for a result of another mesh, and what the
+/// expansions and the figures (host/figures/figures.hpp) throw.
+FigureResult make_figure(FigureRequest request, Backend& backend, Monitor& monitor);
+
+} // namespace cowgpu

@@ -1,0 +1,74 @@
+#include "host/requests/places.hpp"
+
+#include "host/error.hpp"
+#include "host/sphere_directions.hpp"
+
+#include <fmt/format.h>
+
+namespace cowgpu {
+namespace {
+
+double length_of(const char* option, const Reach& reach, const PlaceFrame& frame) {
+  if (reach.radii) return reach.length.value * frame.radius;
+  if (reach.length.has_unit && !frame.metric)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("{} {} m: a length with a unit needs the mesh's: add --length-unit or --length; a bare number "
+                    "is in the mesh's unit, and 1.5R is one and a half times its sphere",
+                    option, reach.length.value));
+  return reach.length.value;
+}
+
+Places plane(const PlaneRequest& request, const PlaceFrame& frame) {
+  const double offset = length_of("--plane", request.offset, frame),
+               extent = length_of("--plane", request.extent, frame);
+  if (!(extent > 0))
+    throw Error(Fault::bad_argument, fmt::format("--plane: a plane of the extent {} has no points", extent));
+  Places places;
+  const int u = (request.axis + 1) % 3, v = (request.axis + 2) % 3;
+  const double step = 2 * extent / (request.count - 1);
+  for (int j = 0; j < request.count; ++j)
+    for (int i = 0; i < request.count; ++i) {
+      Vec3 p = frame.origin;
+      p[request.axis] += offset;
+      p[u] += i * step - extent;
+      p[v] += j * step - extent;
+      places.points.push_back(p);
+    }
+  places.name = fmt::format("plane across {} at {:.6g} from the origin, {} x {} points up to {:.6g} from its middle",
+                            "xyz"[request.axis], offset, request.count, request.count, extent);
+  return places;
+}
+
+Places sphere(const SphereRequest& request, const PlaceFrame& frame) {
+  Places places;
+  places.radius = length_of("--sphere", request.radius, frame);
+  if (!(places.radius > 0))
+    throw Error(Fault::bad_argument, fmt::format("--sphere {}: the radius must be above 0", places.radius));
+  places.grid = make_grid(GridKind::gauss_legendre, request.rings - 1);
+  const SphereDirections to(*places.grid);
+  for (int i = 0; i < places.grid->rings; ++i)
+    for (int j = 0; j < places.grid->ring_length; ++j)
+      places.points.emplace_back(frame.origin + places.radius * to(i, j));
+  places.name = fmt::format("sphere of radius {:.6g} about the origin, {} rings of {} points", places.radius,
+                            places.grid->rings, places.grid->ring_length);
+  return places;
+}
+
+} // namespace
+
+std::size_t count_places(const PlaceRequest& request) {
+  if (const auto* points = std::get_if<PointsRequest>(&request)) return points->points.size();
+  if (const auto* sphere = std::get_if<SphereRequest>(&request))
+    return std::size_t(sphere->rings) * std::size_t(2 * sphere->rings + 16);
+  const auto n = std::size_t(std::get<PlaneRequest>(request).count);
+  return n * n;
+}
+
+Places find_places(const PlaceRequest& request, const PlaceFrame& frame) {
+  if (const auto* points = std::get_if<PointsRequest>(&request)) return {points->name, points->points, {}, 0};
+  if (const auto* wanted = std::get_if<SphereRequest>(&request)) return sphere(*wanted, frame);
+  return plane(std::get<PlaneRequest>(request), frame);
+}
+
+} // namespace cowgpu

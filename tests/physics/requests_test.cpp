@@ -1,0 +1,181 @@
+// What the applications of the multipoles find, asked for from C++ without a command line.
+#include "host/error.hpp"
+#include "host/report/findings_report.hpp"
+#include "host/requests/drop.hpp"
+#include "host/requests/potential.hpp"
+#include "host/requests/radiate.hpp"
+#include "host/requests/tensors.hpp"
+#include "host/requests/tides.hpp"
+#include "host/requests/tip.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+using namespace cowgpu;
+using Catch::Contains;
+
+namespace {
+
+// A box of 1 x 2 x 3 feet as heavy as water.
+BodyRequest box() {
+  BodyRequest body;
+  body.mesh = "builtin:box:1,2,3";
+  body.length_unit = 0.3048;
+  body.density = 1000;
+  return body;
+}
+
+constexpr double foot = 0.3048, kilograms = 6000 * foot * foot * foot;
+
+std::string text_of(const physics::Findings& found) {
+  std::string text;
+  write_findings(found, [&](std::string_view part) { text += part; });
+  return text;
+}
+
+} // namespace
+
+TEST_CASE("a body is loaded in SI with its units, or in its file's without", "[requests]") {
+  Monitor monitor;
+  const LoadedMass loaded = load_mass(box(), Motion::free, monitor);
+  CHECK(loaded.units.stated);
+  CHECK(loaded.units.metre == foot);
+  CHECK(loaded.units.kilogram == Approx(1000 * foot * foot * foot).epsilon(1e-15));
+  const physics::RigidBody body = rigid_body(loaded);
+  CHECK(body.mass == Approx(kilograms).epsilon(1e-14));
+  CHECK(body.inertia()(0, 0) == Approx(kilograms * 13 * foot * foot / 12).epsilon(1e-14));
+  CHECK(free_body(loaded, 4, monitor).higher);
+  BodyRequest plain = box();
+  plain.length_unit.reset();
+  plain.density.reset();
+  const LoadedMass without = load_mass(plain, Motion::held, monitor);
+  CHECK_FALSE(without.units.stated);
+  CHECK(rigid_body(without).mass == Approx(6).epsilon(1e-15));
+  CHECK_THROWS_WITH(require_units(without), Contains("no unit was stated"));
+  plain.length = 0.9144; // its longest side
+  CHECK(rigid_body(load_mass(plain, Motion::held, monitor)).mass == Approx(kilograms / 1000).epsilon(1e-14));
+  plain.length_unit = 1;
+  CHECK_THROWS_WITH(load_mass(plain, Motion::held, monitor), Contains("leave one out"));
+}
+
+TEST_CASE("tensors of a request are those of the textbook, and make a document", "[requests]") {
+  Monitor monitor;
+  const TensorsResult result = tensors({box(), true}, monitor);
+  const double m = kilograms * foot * foot / 12;
+  CHECK((*result.principal.moments - m * Vec3(5, 10, 13)).norm() < 1e-13 * m);
+  CHECK_THAT(text_of(findings(result)), Contains("principal moments of inertia"));
+}
+
+TEST_CASE("a body in orbit is asked for by numbers", "[requests]") {
+  Monitor monitor;
+  TidesRequest request;
+  request.body = box();
+  request.radius = 6771e3;
+  request.spin = 1;
+  const TidesResult result = tides(request, monitor);
+  CHECK(result.body.mass == Approx(kilograms).epsilon(1e-14));
+  CHECK(result.orbit.rate == Approx(std::sqrt(3.986004e14 / std::pow(6771e3, 3))).epsilon(1e-9));
+  CHECK(result.torque_quadrupole.gravity.norm() < 1e-12L * result.largest_torque);
+  CHECK(result.equilibria.size() == 6);
+  CHECK(result.caught == false);
+  CHECK_THAT(text_of(findings(result)), Contains("orbital period"));
+  request.body.length_unit.reset();
+  request.body.density.reset();
+  CHECK_THROWS_WITH(tides(request, monitor), Contains("no unit was stated"));
+}
+
+TEST_CASE("a body that is dropped without spin lands as it was held", "[requests]") {
+  Monitor monitor;
+  DropRequest request;
+  request.body = box();
+  request.height = 10;
+  request.order = 2;
+  const DropOutcome upright = drop(request, monitor);
+  CHECK(upright.lands_on_its_feet());
+  CHECK(upright.fall.speed == Approx(std::sqrt(2 * 9.82 * (10 - foot))).epsilon(2e-3));
+  request.attitude = Held::upside_down;
+  CHECK_FALSE(drop(request, monitor).lands_on_its_feet());
+  CHECK_THAT(text_of(findings(upright)), Contains("lands on its feet"));
+}
+
+TEST_CASE("the waves of a body that turns, with units and without", "[requests]") {
+  Monitor monitor;
+  RadiateRequest request;
+  request.body = box();
+  request.axis = Vec3::UnitZ();
+  request.octupole = true;
+  const RadiationResult result = radiate(request, monitor);
+  const double b_minus_a = kilograms * 3 * foot * foot / 12; // I_yy - I_xx changes sign each quarter turn
+  const double power = 32 * 6.6743e-11 / (5 * std::pow(299792458.0, 5)) * b_minus_a * b_minus_a;
+  CHECK(double(result.power) == Approx(power).epsilon(1e-12));
+  CHECK(result.spin);
+  CHECK(result.spherical_difference < 1e-14);
+  CHECK_THAT(text_of(findings(result)), Contains("radiated power"));
+  request.body.length_unit.reset();
+  request.body.density.reset();
+  CHECK_FALSE(radiate(request, monitor).spin);
+}
+
+TEST_CASE("the potential of a body is asked for at places, and so are its series' errors", "[requests]") {
+  Monitor monitor;
+  const auto backend = make_cpu_backend(1);
+  PotentialRequest request;
+  request.body = box();
+  request.places = PointsRequest{{Vec3(100, 0, 0), Vec3(0, 100, 0)}, "far away"};
+  request.lmax = 4;
+  const PotentialResult far = potential(request, *backend, 1, monitor);
+  CHECK(far.field.value[0] == Approx(-6.6743e-11 * kilograms / 100).epsilon(1e-5));
+  CHECK(far.exact_points == 0);
+  CHECK_THAT(text_of(findings(far, 20)), Contains("point by point"));
+  request.places = SphereRequest{{{1, false, {}}, true}, 4};
+  request.inside_exact = true;
+  const PotentialResult near = potential(request, *backend, 1, monitor);
+  CHECK(near.points.size() == count_places(request.places));
+  CHECK(near.radius_known());
+  request.places = PointsRequest{{Vec3::Zero()}, "inside"};
+  request.inside_exact = false;
+  CHECK_THROWS_WITH(potential(request, *backend, 1, monitor), Contains("--inside exact"));
+  const SeriesErrorsResult errors = series_errors({box(), {0, 2}, {3}}, *backend, 1, monitor);
+  REQUIRE(errors.errors.rows.size() == 2);
+  CHECK(errors.errors.rows[1].potential_max < errors.errors.rows[0].potential_max);
+}
+
+TEST_CASE("what tips a body is asked for by order", "[requests]") {
+  Monitor monitor;
+  const auto backend = make_cpu_backend(1);
+  TipRequest request;
+  request.body = box();
+  request.body.mesh = "builtin:ellipsoid:3,2,1@2";
+  request.orders = {0, 2};
+  request.lmax = 4;
+  request.resolution = 16;
+  const TipResult result = tip(request, *backend, monitor);
+  CHECK(result.body.mass == result.forces.mass);
+  CHECK(result.expansion == "stretch");
+  REQUIRE(result.orders.size() == 2);
+  REQUIRE(result.orders[0].forces);
+  CHECK(result.orders[0].forces->chosen().force < 1e-6); // a ball rolls
+  CHECK(result.orders[0].forces->mass == Approx(result.body.mass).epsilon(1e-14));
+  CHECK_THAT(text_of(findings(result)), Contains("by order of stretch"));
+}
+
+TEST_CASE("a box tips at half its width over its diagonal, however it is asked for", "[requests]") {
+  Monitor monitor;
+  const auto backend = make_cpu_backend(1);
+  TipRequest request;
+  request.body = box();
+  request.as_modelled = true;
+  request.side = physics::Side::left;
+  request.push.profile = physics::square_pulse(1e6, 1);
+  const TipResult result = tip(request, *backend, monitor);
+  CHECK_FALSE(rebuilds_surfaces(request));
+  // 3 wide, 2 high; the push is at the opposite edge.
+  CHECK(result.forces.chosen().force == Approx(1.5 / std::hypot(2, 3)).epsilon(1e-12));
+  REQUIRE(result.push);
+  CHECK(result.push->pushed->outcome == physics::Outcome::tipped);
+  CHECK(result.push->boundary.size() == 19);
+  request.gravity = 0;
+  CHECK_THROWS_WITH(tip(request, *backend, monitor), Contains("--gravity"));
+}
