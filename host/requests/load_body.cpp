@@ -4,10 +4,10 @@
 #include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/physics/potential.hpp"
 #include "host/report/result.hpp"
-#include "host/mass/mass_moments.hpp"
 
 #include <fmt/format.h>
 
