@@ -191,7 +191,6 @@ LoadedMass load_mass(const BodyRequest& request, Motion motion, Monitor& monitor
 }
 
 void require_units(const LoadedMass& loaded) {
-  if (loaded.coefficients) physics::check_mass_multipoles(*loaded.coefficients);
   if (loaded.units.stated) return;
   throw Error(
       Fault::bad_argument,
