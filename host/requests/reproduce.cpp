@@ -146,7 +146,7 @@ void check_names(const std::vector<std::string>& wanted, const std::vector<Stage
   for (const Stage& stage : stages) there += (there.empty() ? "" : ", ") + stage.name;
   for (const std::string& name : wanted)
     if (std::none_of(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.name == name; }))
-      throw Error(Fault::bad_argument, fmt::format("{}: there is no such stage; there are {}", name, there));
+      throw Error(Fault::bad_argument, fmt::format("--only {}: there is no such stage; there are {}", name, there));
 }
 
 // The stages to run. With `only` the others are among them where they were done before, which shows them.
