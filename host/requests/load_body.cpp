@@ -4,10 +4,10 @@
 #include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/physics/potential.hpp"
 #include "host/report/result.hpp"
-#include "host/mass/mass_moments.hpp"
 
 #include <fmt/format.h>
 
@@ -190,6 +190,7 @@ LoadedMass load_mass(const BodyRequest& request, Motion motion, Monitor& monitor
 }
 
 void require_units(const LoadedMass& loaded) {
+  if (loaded.coefficients) physics::check_mass_multipoles(*loaded.coefficients);
   if (loaded.units.stated) return;
   throw Error(
       Fault::bad_argument,

@@ -72,7 +72,8 @@ enum class Motion {
 /// nothing.
 LoadedMass load_mass(const BodyRequest& request, Motion motion, Monitor& monitor);
 
-/// Throws Error(bad_argument) with what to give where no units are stated: for what has no meaning without kilograms.
+/// For what has no meaning without kilograms: throws Error(bad_argument) with what to give where no units are stated, and
+/// Error(file_format) for coefficients of no mass, to which no units would help.
 void require_units(const LoadedMass& loaded);
 
 /// To degree 2 about its origin.

@@ -54,7 +54,7 @@ struct Places {
   double radius = 0;              ///< radius of that sphere
 };
 
-/// How many points they will be, before any is made.
+/// Upper bound of how many points there will be, before any is made.
 std::size_t count_places(const PlaceRequest& request);
 
 /// Throws Error(bad_argument) for a radius or an extent that is not above 0, and for a length with a unit where the body has

@@ -10,7 +10,7 @@ using namespace cowgpu::test;
 
 TEST_CASE("a map is made and judged by a call, by each method", "[map][requests]") {
   MapRequest request;
-  request.mesh = icosphere(2);
+  request.mesh = test::icosphere(2);
   request.lmax = 8;
   const auto check_one = [&](MapMethod method) {
     const MapResult result = make_map(request, silent_monitor());

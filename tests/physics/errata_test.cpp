@@ -45,7 +45,7 @@ TEST_CASE("eighteen errata have words, a reason and a number of their own", "[er
   for (const Erratum& e : errata()) {
     CHECK(e.number == expected++);
     CHECK(!std::string(e.printed).empty());
-    CHECK(!std::string(e.ours).empty());
+    CHECK(!std::string(e.right).empty());
     CHECK(!std::string(e.why).empty());
   }
   CHECK(errata().size() == 18);

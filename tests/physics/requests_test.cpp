@@ -132,7 +132,8 @@ TEST_CASE("the potential of a body is asked for at places, and so are its series
   request.places = SphereRequest{{{1, false, {}}, true}, 4};
   request.inside_exact = true;
   const PotentialResult near = potential(request, *backend, 1, monitor);
-  CHECK(near.points.size() == count_places(request.places));
+  CHECK(near.points.size() == std::size_t(near.grid->points()));
+  CHECK(near.points.size() <= count_places(request.places));
   CHECK(near.radius_known());
   request.places = PointsRequest{{Vec3::Zero()}, "inside"};
   request.inside_exact = false;
