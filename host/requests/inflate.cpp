@@ -33,12 +33,12 @@ double level_of(const std::optional<double>& given, const InflateResult& result)
   const Body& body = result.body;
   const double longest = body.box.longest_side();
   if (!given && result.star->lower == 0 && result.star->upper < 1e-4 * longest)
-    throw Error(Fault::bad_argument,
-                fmt::format("--levels star: {} is star-shaped about ({:.6g}, {:.6g}, {:.6g}) as it is, or nearly, t* "
-                            "<= {:.3g}: there is "
-                            "nothing to show at the level star; give levels as numbers, or another origin",
-                            body.surface.mesh().name, body.origin.x(), body.origin.y(), body.origin.z(),
-                            result.star->upper));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format(
+            "--levels star: {} is star-shaped about ({:.6g}, {:.6g}, {:.6g}) as it is, or nearly, t* <= {:.3g}: "
+            "there is nothing to show; name levels by numbers, or another --origin",
+            body.surface.mesh().name, body.origin.x(), body.origin.y(), body.origin.z(), result.star->upper));
   const double level = given ? *given : flow_time(0, *result.star);
   if (!(level >= 1e-4 * longest && level <= 1e4 * longest))
     throw Error(Fault::bad_argument,

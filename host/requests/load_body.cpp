@@ -102,10 +102,11 @@ LoadedMass load_coefficients(const BodyRequest& request) {
   refuse_placing(request);
   LoadedMass loaded;
   CoefficientSet set = read_coefficient_set(request.mesh, "", request.length_unit);
+  physics::check_mass_multipoles(set);
   loaded.notes = request.notes;
   loaded.notes.insert(loaded.notes.end(), set.notes.begin(), set.notes.end());
   const bool beside = request.units_stated() && set.units_stated;
-  if (request.density && set.kind != CoefficientKind::field) restate_density(request, set);
+  if (request.density) restate_density(request, set);
   if (request.brillouin_radius) state_radius(request, set);
   loaded.units = units_of(request, set);
   if (beside && !request.density && !request.charge)
@@ -190,7 +191,6 @@ LoadedMass load_mass(const BodyRequest& request, Motion motion, Monitor& monitor
 }
 
 void require_units(const LoadedMass& loaded) {
-  if (loaded.coefficients) physics::check_mass_multipoles(*loaded.coefficients);
   if (loaded.units.stated) return;
   throw Error(
       Fault::bad_argument,

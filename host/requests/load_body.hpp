@@ -67,9 +67,9 @@ enum class Motion {
   free, ///< about its centre of mass, which a mesh's origin becomes whatever was asked for
 };
 
-/// Reads either. Throws what load_body() and read_coefficient_set() throw, Error(bad_argument) where the request places a
-/// mesh and the file holds coefficients, for units or a radius that the file says otherwise, and for a free body that weighs
-/// nothing.
+/// Reads either. Throws what load_body(), read_coefficient_set() and physics::check_mass_multipoles() throw,
+/// Error(bad_argument) where the request places a mesh and the file holds coefficients, for units or a radius that the file
+/// says otherwise, and for a free body that weighs nothing.
 LoadedMass load_mass(const BodyRequest& request, Motion motion, Monitor& monitor);
 
 /// For what has no meaning without kilograms: throws Error(bad_argument) with what to give where no units are stated, and
