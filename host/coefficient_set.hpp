@@ -82,6 +82,9 @@ struct CoefficientSet {
       : lmax(lmax_), fields(fields_), first(std::size_t(fields_) * SphereCoefficients::count(lmax_)),
         second(first.size()), names(std::size_t(fields_)), units(std::size_t(fields_)) {}
 
+  bool in_metres() const { return length_unit == "m"; }
+  bool in_si() const { return in_metres() && mass_unit == "kg"; }
+
   /// Where (l, m) of field f stands in both.
   std::size_t index(int f, int l, int m) const {
     return std::size_t(f) * SphereCoefficients::count(lmax) + SphereCoefficients::index(lmax, l, m);

@@ -155,7 +155,7 @@ void write_gfc(const CoefficientSet& set, AtomicFile& file) {
   std::string text = fmt::format("# cowgpu {}\n", version);
   text += comment_lines(set, {"coefficients_of", "lmax", "normalisation", "phase", "reference_radius", "gm"});
   for (auto at = text.find("of_head"); at != std::string::npos; at = text.find("of_head", at)) text[at + 2] = '-';
-  const bool si = set.length_unit == "m" && set.mass_unit == "kg";
+  const bool si = set.in_si();
   text +=
       "# C_lm + i S_lm = (-1)^m sqrt((2 - delta_m0) 4 pi) Q_lm / ((2l + 1) M R^l); axes of the mesh, theta from +z,\n"
       "# phi from +x towards +y, about the origin above\n";

@@ -107,7 +107,7 @@ void state_length_unit(CoefficientSet& set, double metres, const std::string& fi
   const auto refuse = [&](const char* why) {
     throw Error(Fault::bad_argument, fmt::format("--length-unit: {} {}", file, why));
   };
-  if (set.length_unit == "m") refuse("is in metres already");
+  if (set.in_metres()) refuse("is in metres already");
   const bool lengths = std::find(set.units.begin(), set.units.end(), "length") != set.units.end();
   if (set.kind == CoefficientKind::field && !lengths && !set.origin) refuse("holds no length");
   const double volume = metres * metres * metres;

@@ -13,7 +13,7 @@ namespace {
 // The expansion and the unit are for the one of both files, or for both, that they are about.
 CoefficientSet read(const DiffRequest& request, const std::filesystem::path& path, bool& unit_used) {
   CoefficientSet set = read_coefficient_set(path, can_hold_expansions(path) ? request.of : "", request.metres);
-  const bool metric = set.units_stated && set.length_unit == "m";
+  const bool metric = set.units_stated && set.in_metres();
   if (request.metres && set.units_stated && !metric && !set.length_unit.empty())
     state_length_unit(set, *request.metres, path.string());
   unit_used = unit_used || !metric;

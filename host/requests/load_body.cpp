@@ -43,13 +43,9 @@ Part load_part(const PartRequest& part, const Placement& placement, Monitor& mon
   }
 }
 
-bool in_si(const CoefficientSet& set) {
-  return set.length_unit == "m" && set.mass_unit == "kg";
-}
-
 // A file's body with the density that is stated instead of its own.
 void restate_density(const BodyRequest& request, CoefficientSet& set) {
-  if (in_si(set))
+  if (set.in_si())
     throw Error(Fault::bad_argument,
                 fmt::format("--density: {} is in kilograms already, and its density stands", request.mesh));
   const double density = *request.density, factor = density / set.density.value_or(1);
@@ -66,7 +62,7 @@ void restate_density(const BodyRequest& request, CoefficientSet& set) {
 void state_radius(const BodyRequest& request, CoefficientSet& set) {
   const Measure& radius = *request.brillouin_radius;
   const std::string option = fmt::format("--brillouin-radius {}{}", radius.value, radius.has_unit ? " m" : "");
-  const bool metres = set.length_unit == "m";
+  const bool metres = set.in_metres();
   if (radius.has_unit && !metres && !request.units_stated())
     throw Error(Fault::bad_argument, option +
                                          ": a length with a unit needs that of the file: add --length-unit, or give "
@@ -83,15 +79,15 @@ void state_radius(const BodyRequest& request, CoefficientSet& set) {
 // Of a file whose format says no units the stated one is in its numbers already.
 Units units_of(const BodyRequest& request, const CoefficientSet& set) {
   const bool beside = request.units_stated() && set.units_stated;
-  if (in_si(set) && request.charge)
+  if (set.in_si() && request.charge)
     throw Error(
         Fault::bad_argument,
         fmt::format("--charge: {} holds a mass in kilograms; expand the body without units, and state them here "
                     "with --length-unit and --density",
                     request.mesh));
-  if (in_si(set) && beside)
+  if (set.in_si() && beside)
     throw Error(Fault::bad_argument, fmt::format("--length-unit: {} is in metres and kilograms already", request.mesh));
-  if (in_si(set)) return {1, 1, true};
+  if (set.in_si()) return {1, 1, true};
   if (!beside) return {};
   const double metre = *request.length_unit;
   return {metre, set.density.value_or(1) * std::pow(metre, 3), true};

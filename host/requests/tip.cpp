@@ -82,7 +82,7 @@ SurfaceSource source_of_set(const std::string& file, const std::string& of, bool
   if (!(spherical_radius(source.expansion) > 0))
     throw Error(Fault::file_format,
                 fmt::format("{}: the coefficient (0, 0) of f_r must be above 0: it gives the mean distance", file));
-  metric = set.length_unit == "m";
+  metric = set.in_metres();
   return source;
 }
 

@@ -70,7 +70,7 @@ double mass_of(const CoefficientSet& set) {
 
 double gravitational_constant(const CoefficientSet& set) {
   if (set.gravitational_constant) return *set.gravitational_constant;
-  return set.length_unit == "m" && set.mass_unit == "kg" ? gravitational_constant_si : 1;
+  return set.in_si() ? gravitational_constant_si : 1;
 }
 
 void change_kind(const CoefficientSet& set, CoefficientSet& result, CoefficientKind kind) {
