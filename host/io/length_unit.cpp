@@ -69,6 +69,18 @@ std::string unit_text(double metres) {
   return metres == 1000 ? "kilometres" : metres == 1 ? "metres" : fmt::format("units of {} m", metres);
 }
 
+// Of a unit `unit` metres long: throws where what was scaled by it left the range of doubles.
+void check_range(const CoefficientSet& set, double unit, const std::string& what) {
+  const auto lost = [](const std::optional<double>& value) { return value && !std::isnormal(*value) && *value != 0; };
+  const auto gone = [&](const std::optional<double>& value) { return value && *value == 0; };
+  if (!(unit > 0) || lost(set.reference_radius) || lost(set.gm) || lost(set.mass) || lost(set.brillouin_radius) ||
+      lost(set.second_moment) || gone(set.reference_radius) || gone(set.gm))
+    throw Error(Fault::bad_argument,
+                fmt::format("--length-unit: in units of {} m {} beyond the range of doubles; state "
+                            "another unit",
+                            unit, what));
+}
+
 } // namespace
 
 void settle_length_unit(CoefficientSet& set, std::optional<double> metres, bool format_says_metres) {
@@ -97,10 +109,7 @@ void settle_length_unit(CoefficientSet& set, std::optional<double> metres, bool 
   if (unit == 1) return;
   set.reference_radius = radius * unit;
   set.gm = gm * (unit * unit * unit);
-  if (!std::isfinite(*set.reference_radius) || !std::isfinite(*set.gm))
-    throw Error(Fault::bad_argument,
-                fmt::format("--length-unit: in units of {} m R = {} and GM = {} are beyond the range of doubles", unit,
-                            radius, gm));
+  check_range(set, unit, fmt::format("R = {} and GM = {} are", radius, gm));
 }
 
 void state_length_unit(CoefficientSet& set, double metres, const std::string& file) {
@@ -122,6 +131,7 @@ void state_length_unit(CoefficientSet& set, double metres, const std::string& fi
   scale(set.mass, volume);
   scale(set.second_moment, volume * metres * metres);
   if (set.origin) *set.origin *= metres;
+  check_range(set, metres, fmt::format("numbers of {} are", file));
   const std::size_t count = SphereCoefficients::count(set.lmax);
   for (std::size_t f = 0; f < std::size_t(set.fields); ++f) {
     const double factor = set.kind == CoefficientKind::multipoles ? volume : set.units[f] == "length" ? metres : 1;

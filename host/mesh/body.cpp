@@ -94,6 +94,13 @@ Units Body::units() const {
 
 Body make_body(ClosedSurface surface, const OriginChoice& origin, double density, std::vector<Part> parts) {
   check_density(density);
+  if (origin.point && !origin.point->allFinite())
+    throw Error(Fault::bad_argument, fmt::format("the origin ({}, {}, {}) must be finite", origin.point->x(),
+                                                 origin.point->y(), origin.point->z()));
+  if (origin.point.has_value() == (origin.kind == "centre of mass"))
+    throw Error(Fault::bad_argument, fmt::format("an origin of the kind '{}' {}; \"centre of mass\" has none, and "
+                                                 "\"mesh\" and \"given\" have one",
+                                                 origin.kind, origin.point ? "has a point" : "has no point"));
   Body body(std::move(surface));
   body.density = density;
   body.parts = std::move(parts);

@@ -27,6 +27,21 @@ void place(RawMesh& mesh, const Placement& placement) {
   }
 }
 
+void check_rotation(const Eigen::Matrix3d& r, std::string_view what) {
+  const double departure = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (r.allFinite() && departure <= 1e-9 && r.determinant() > 0) return;
+  throw Error(Fault::bad_argument,
+              fmt::format("{} is not a rotation: R R^T differs from 1 by {:.3g}, the determinant is {:.3g}; 1e-9 and a "
+                          "positive one are asked for",
+                          what, departure, r.determinant()));
+}
+
+void check_direction(const Vec3& direction, std::string_view what) {
+  if (std::abs(direction.norm() - 1) <= 1e-9) return;
+  throw Error(Fault::bad_argument, fmt::format("{} ({}, {}, {}) must be a vector of length 1", what, direction.x(),
+                                               direction.y(), direction.z()));
+}
+
 Eigen::Matrix3d axes_rotation(std::string_view text) {
   const auto refuse = [&](const char* why) {
     return Error(Fault::bad_argument,

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include <string_view>
+
 namespace cowgpu {
 
 /// p -> rotation (units.metre p). The rotation is exact where it only names axes anew; any other rounds coordinates once.
@@ -19,6 +21,12 @@ struct Placement {
 /// Moves a mesh; its hash stays that of the file, and a note says what was done. Coordinates that leave the range of doubles
 /// become infinite, which ClosedSurface::from() refuses.
 void place(RawMesh& mesh, const Placement& placement);
+
+/// Throws Error(bad_argument), which begins with `what`, unless R R^T is 1 to 1e-9 and the determinant positive.
+void check_rotation(const Eigen::Matrix3d& r, std::string_view what);
+
+/// Throws Error(bad_argument), which begins with `what`, unless the length is 1 to 1e-9.
+void check_direction(const Vec3& direction, std::string_view what);
 
 /// The rotation that makes the mesh's axes named by `text` the x, y and z axes: three of x, y, z, -x, -y, -z separated by
 /// commas, "x,-z,y" for new x = x, new y = -z, new z = y. Throws Error(bad_argument) for other words, an axis named twice,

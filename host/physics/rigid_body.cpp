@@ -1,11 +1,11 @@
 #include "host/physics/rigid_body.hpp"
 
 #include "host/error.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/mesh/tensors.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
 #include "host/spectrum/convert.hpp"
-#include "host/mass/mass_moments.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -121,6 +121,12 @@ RigidBody rigid_body(const CoefficientSet& set, const Units& units) {
   result.radius_known = set.brillouin_radius.has_value();
   result.centre = result.origin.value_or(Vec3::Zero()) + result.first_moment / result.mass;
   if (units.metre != 1) to_si(result, units.metre, std::pow(units.metre, 3));
+  if (!std::isfinite(result.mass) || !std::isfinite(result.radius) || !result.quadrupole.allFinite() ||
+      !std::isfinite(result.trace.value_or(0)))
+    throw Error(Fault::bad_argument,
+                fmt::format("in units of {} m mass and moments of these coefficients are beyond the range of doubles; "
+                            "state another --length-unit",
+                            units.metre));
   return result;
 }
 

@@ -68,6 +68,10 @@ DropOutcome drop(const DropRequest& request, Monitor& monitor) {
         Fault::file_format,
         fmt::format("{} holds coefficients, which do not say where the body's lowest point is; `drop` needs the mesh",
                     request.body.mesh));
+  check_direction(request.feet, "the direction of the feet");
+  if (const auto* attitude = std::get_if<physics::LongMat3>(&request.attitude))
+    check_rotation(attitude->cast<double>(), "the attitude");
+  check_order(request.order);
   const LoadedMass loaded = load_mass(request.body, Motion::free, monitor);
   require_units(loaded);
   const std::vector<Vec3> vertices = corners_of(*loaded.mesh);

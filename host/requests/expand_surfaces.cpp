@@ -81,6 +81,13 @@ void check_expansions(const ExpansionChoice& choice) {
   if (choice.mass) words.emplace_back("mass");
   for (const MapMethod map : choice.maps) words.push_back(name(map));
   const bool flow = asked_for(MapMethod::flow);
+  for (std::size_t i = 0; i < choice.maps.size(); ++i)
+    if (std::find(made_maps.begin(), made_maps.end(), choice.maps[i]) == made_maps.end() ||
+        std::find(choice.maps.begin() + std::ptrdiff_t(i) + 1, choice.maps.end(), choice.maps[i]) != choice.maps.end())
+      throw Error(Fault::bad_argument, "maps are some of harmonic, stretch, smooth and flow, each once");
+  if (flow && (choice.flow.grid_degree < 0 || choice.flow.grid_degree > largest_grid_degree))
+    throw Error(Fault::bad_argument,
+                fmt::format("the grid's degree {} must be from 0 to {}", choice.flow.grid_degree, largest_grid_degree));
   if (!choice.map_file.empty() && (choice.maps.size() != 1 || flow))
     throw Error(Fault::bad_argument,
                 fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "

@@ -150,6 +150,7 @@ RawMesh load_mended(const std::string& mesh, const Mending& mending, Monitor& mo
 
 Body load_body(const BodyRequest& request, std::vector<std::string>& notes, Monitor& monitor) {
   check_lengths(request);
+  check_rotation(request.rotation, "the rotation from the file's axes");
   const auto add = [&](const std::vector<std::string>& more) { notes.insert(notes.end(), more.begin(), more.end()); };
   add(request.notes);
   Placement placement{{request.length_unit.value_or(1), 1, request.units_stated()}, request.rotation};
@@ -195,6 +196,12 @@ void require_units(const LoadedMass& loaded) {
                   loaded.name,
                   loaded.mesh ? "--length 2.5m (how long the body is) or --length-unit (what 1 in its file is)"
                               : "--length-unit (what 1 in the file is)"));
+}
+
+void check_order(int order) {
+  if (order < least_order || order > largest_order)
+    throw Error(Fault::bad_argument,
+                fmt::format("the multipoles' order {} must be from {} to {}", order, least_order, largest_order));
 }
 
 physics::RigidBody rigid_body(const LoadedMass& loaded) {

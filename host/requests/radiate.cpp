@@ -1,8 +1,8 @@
 #include "host/requests/radiate.hpp"
 
 #include "host/error.hpp"
-#include "host/mesh/tensors.hpp"
 #include "host/mass/mass_moments.hpp"
+#include "host/mesh/tensors.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -74,6 +74,10 @@ void check_mass(const RigidBody& body, const Vec3& axis) {
 } // namespace
 
 RadiationResult radiate(const RadiateRequest& request, Monitor& monitor) {
+  check_direction(request.axis, "the axis");
+  if (!std::isfinite(request.omega) || !std::isfinite(request.time))
+    throw Error(Fault::bad_argument,
+                fmt::format("{} rad/s for {} s: both must be finite", request.omega, request.time));
   const LoadedMass loaded = load_mass(request.body, Motion::free, monitor);
   RadiationResult r;
   r.subject = subject(loaded);

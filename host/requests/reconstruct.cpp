@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace cowgpu {
@@ -56,6 +57,14 @@ RebuiltOrder rebuild(const ReconstructRequest& request, const ReconstructReport&
 } // namespace
 
 void check_reconstruct(const ReconstructRequest& request) {
+  constexpr std::size_t most_samples = 100'000'000;
+  if (request.resolution < 0 || request.samples > most_samples ||
+      std::adjacent_find(request.orders.begin(), request.orders.end(), std::greater<>()) != request.orders.end() ||
+      (!request.orders.empty() && request.orders.front() < 0))
+    throw Error(Fault::bad_argument,
+                fmt::format("orders {} at resolution {} with {} samples: orders ascend from 0 on, a "
+                            "resolution is not below 0, and there are at most {} samples",
+                            fmt::join(request.orders, ","), request.resolution, request.samples, most_samples));
   check_surface_choice(request.source, largest_order(request));
   const int largest = request.orders.empty() ? 8 : request.orders.back();
   if (request.resolution > 0 && request.resolution < largest)

@@ -65,6 +65,12 @@ std::vector<AttitudeShift> shifts(const TidesResult& t) {
 } // namespace
 
 TidesResult tides(const TidesRequest& request, Monitor& monitor) {
+  if (request.attitude) check_rotation(request.attitude->cast<double>(), "the attitude");
+  if (request.order != 0) check_order(request.order);
+  for (const auto& [value, what] : {std::pair(request.spin.value_or(1), "the spin"),
+                                    std::pair(request.centre.mass(), "the mass at the centre of the orbit")})
+    if (!(value > 0) || !std::isfinite(value))
+      throw Error(Fault::bad_argument, fmt::format("{} is {}; it must be above 0 and finite", what, value));
   const LoadedMass loaded = load_mass(request.body, Motion::free, monitor);
   TidesResult t;
   t.subject = subject(loaded);

@@ -321,6 +321,10 @@ bool rebuilds_surfaces(const TipRequest& request) {
 }
 
 TipResult tip(const TipRequest& request, Backend& backend, Monitor& monitor) {
+  if (request.resolution < 0 || (request.friction && !(*request.friction >= 0 && std::isfinite(*request.friction))))
+    throw Error(Fault::bad_argument,
+                fmt::format("a resolution of {} and a friction coefficient of {}: neither is below 0, both are finite",
+                            request.resolution, request.friction.value_or(0)));
   check_gravity(request.gravity);
   Standing standing = is_coefficient_file(request.body.mesh) ? from_coefficients(request, backend, monitor)
                                                              : from_mesh(request, backend, monitor);

@@ -52,6 +52,11 @@ TransformRun planned_run(const Request& request, const Backend& backend) {
 
 TransformPlan plan_transform(const AnalyseRequest& request, const Backend& backend) {
   const GridFile& in = request.input;
+  if (in.fields() == 0 || in.values.size() != std::size_t(in.fields()) * in.grid.points() || in.grid.rings == 0)
+    throw Error(Fault::bad_argument,
+                fmt::format("{}: {} fields on {} rings of {} points have not {} values: a grid is "
+                            "asked for with its values, field by field",
+                            request.name, in.fields(), in.grid.rings, in.grid.ring_length, in.values.size()));
   TransformPlan plan{"analysis",      in.grid,  request.lmax < 0 ? in.lmax : request.lmax,
                      in.names,        in.notes, request.convention,
                      backend.facts(), {}};

@@ -1,6 +1,7 @@
 #include "host/spectrum/rotation.hpp"
 
 #include "host/error.hpp"
+#include "host/mesh/placement.hpp"
 #include "host/spectrum/quarter_turn.hpp"
 #include "host/sphere_grid.hpp"
 
@@ -84,12 +85,7 @@ Eigen::Matrix3d rotation_matrix(const EulerAngles& angles) {
 }
 
 EulerAngles euler_angles(const Eigen::Matrix3d& r) {
-  const double departure = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(departure <= 1e-9) || !(r.determinant() > 0))
-    throw Error(Fault::bad_argument,
-                fmt::format("the matrix is not a rotation: R R^T differs from 1 by {:.3g}, the determinant is {:.3g}; "
-                            "1e-9 and a positive one are asked for",
-                            departure, r.determinant()));
+  check_rotation(r, "the matrix");
   const double sine = std::hypot(r(0, 2), r(1, 2));
   EulerAngles angles;
   angles.beta = std::atan2(sine, r(2, 2));

@@ -180,3 +180,61 @@ TEST_CASE("a box tips at half its width over its diagonal, however it is asked f
   request.gravity = 0;
   CHECK_THROWS_WITH(tip(request, *backend, monitor), Contains("--gravity"));
 }
+
+TEST_CASE("requests of nonsense are refused in words, whoever makes them", "[requests]") {
+  Monitor monitor;
+  const auto refused = [&](auto&& call, const char* word) {
+    try {
+      call();
+      FAIL("taken, and it should say: " << word);
+    } catch (const Error& error) {
+      CHECK(error.fault() == Fault::bad_argument);
+      CHECK_THAT(error.what(), Contains(word));
+    }
+  };
+  const double nan = std::nan("");
+  for (const Eigen::Matrix3d& r :
+       {Eigen::Matrix3d(2 * Eigen::Matrix3d::Identity()), Eigen::Matrix3d(-Eigen::Matrix3d::Identity()),
+        Eigen::Matrix3d(Eigen::Matrix3d::Zero()), Eigen::Matrix3d(Eigen::Matrix3d::Constant(nan))}) {
+    BodyRequest turned = box();
+    turned.rotation = r;
+    refused([&] { load_mass(turned, Motion::held, monitor); }, "is not a rotation");
+    TidesRequest orbit{box()};
+    orbit.radius = 7e6;
+    orbit.attitude = r.cast<long double>();
+    refused([&] { tides(orbit, monitor); }, "is not a rotation");
+    DropRequest fall{box()};
+    fall.height = 10;
+    fall.attitude = physics::LongMat3(r.cast<long double>());
+    refused([&] { drop(fall, monitor); }, "is not a rotation");
+  }
+  for (const Vec3& direction : {Vec3(0, 5, 0), Vec3(0, 0, 0), Vec3(nan, 0, 0)}) {
+    RadiateRequest turning{box()};
+    turning.axis = direction;
+    refused([&] { radiate(turning, monitor); }, "of length 1");
+    DropRequest fall{box()};
+    fall.height = 10;
+    fall.feet = direction;
+    refused([&] { drop(fall, monitor); }, "of length 1");
+  }
+  for (const int order : {-3, 1, 65}) {
+    TidesRequest orbit{box()};
+    orbit.radius = 7e6;
+    orbit.order = order;
+    refused([&] { tides(orbit, monitor); }, "must be from 2 to 64");
+  }
+  for (const double spin : {nan, -1.0}) {
+    TidesRequest orbit{box()};
+    orbit.radius = 7e6;
+    orbit.spin = spin;
+    refused([&] { tides(orbit, monitor); }, "the spin is");
+  }
+  BodyRequest body = box();
+  body.origin = {"given", Vec3(nan, 0, 0)};
+  refused([&] { load_mass(body, Motion::held, monitor); }, "must be finite");
+  body.origin = {"moon", {}};
+  refused([&] { load_mass(body, Motion::held, monitor); }, "has no point");
+  TipRequest pushed{box()};
+  pushed.friction = nan;
+  refused([&] { tip(pushed, *make_cpu_backend(), monitor); }, "friction");
+}
