@@ -108,7 +108,7 @@ std::string not_a_number(std::string_view text) {
 }
 
 std::string not_whole(std::string_view text) {
-  if (is_whole(text)) return "is too large";
+  if (is_whole(text)) return text.front() == '-' ? "is too small" : "is too large";
   if (length_of_number(text) == text.size() && !text.empty())
     return "is not written as a whole number, in digits alone";
   return not_a_number(text);
