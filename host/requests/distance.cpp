@@ -1,10 +1,13 @@
 #include "host/requests/distance.hpp"
 
 #include "host/clock.hpp"
+#include "host/error.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/requests/memory.hpp"
+
+#include <fmt/format.h>
 
 namespace cowgpu {
 
@@ -20,6 +23,9 @@ DistancePlan::DistancePlan(DistanceRequest request, Monitor& monitor) {
     result.mesh = std::move(request.mesh);
     result.notes = result.mesh.notes;
   }
+  if (request.lattice && *request.lattice < 2)
+    throw Error(Fault::bad_argument,
+                fmt::format("a lattice with {} points along a side: it has 2 at least", *request.lattice));
   if (request.lattice) {
     const Box box = bounding_box(result.mesh.vertices, result.mesh.faces);
     result.lattice = lattice_about(box.min, box.max, lattice_enlargement, *request.lattice);

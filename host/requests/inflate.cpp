@@ -82,6 +82,8 @@ MemoryNeed inflate_memory(const InflateRequest& request, const Backend& backend)
 
 InflateResult inflate(InflateRequest request, Backend& backend, Monitor& monitor,
                       const std::function<void(InflatedBody&)>& done) {
+  if (request.cells < 1)
+    throw Error(Fault::bad_argument, fmt::format("a level in {} cells: there is 1 at least", request.cells));
   check_memory(inflate_memory(request, backend), backend, "lower --cells");
   InflateResult result{make_body(ClosedSurface::from(std::move(request.mesh)), request.origin, 1), backend.facts()};
   const Body& body = result.body;

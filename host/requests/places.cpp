@@ -8,6 +8,8 @@
 namespace cowgpu {
 namespace {
 
+constexpr int largest_side = 20000; // of a plane, in points
+
 double length_of(const char* option, const Reach& reach, const PlaceFrame& frame) {
   if (reach.radii) return reach.length.value * frame.radius;
   if (reach.length.has_unit && !frame.metric)
@@ -55,9 +57,23 @@ Places sphere(const SphereRequest& request, const PlaceFrame& frame) {
   return places;
 }
 
+void check_counts(const PlaceRequest& request) {
+  if (const auto* sphere = std::get_if<SphereRequest>(&request);
+      sphere && (sphere->rings < 1 || sphere->rings > largest_grid_degree + 1))
+    throw Error(Fault::bad_argument,
+                fmt::format("a sphere of {} rings: there are from 1 to {}", sphere->rings, largest_grid_degree + 1));
+  const auto* plane = std::get_if<PlaneRequest>(&request);
+  if (plane && (plane->axis < 0 || plane->axis > 2 || plane->count < 2 || plane->count > largest_side))
+    throw Error(Fault::bad_argument,
+                fmt::format("a plane across axis {} with {} points a side: axes are 0, 1 and 2, and "
+                            "sides have from 2 to {} points",
+                            plane->axis, plane->count, largest_side));
+}
+
 } // namespace
 
 std::size_t count_places(const PlaceRequest& request) {
+  check_counts(request);
   if (const auto* points = std::get_if<PointsRequest>(&request)) return points->points.size();
   if (const auto* sphere = std::get_if<SphereRequest>(&request))
     return std::size_t(sphere->rings) * std::size_t(2 * sphere->rings + 16);
@@ -66,6 +82,7 @@ std::size_t count_places(const PlaceRequest& request) {
 }
 
 Places find_places(const PlaceRequest& request, const PlaceFrame& frame) {
+  check_counts(request);
   if (const auto* points = std::get_if<PointsRequest>(&request)) return {points->name, points->points, {}, 0};
   if (const auto* wanted = std::get_if<SphereRequest>(&request)) return sphere(*wanted, frame);
   return plane(std::get<PlaneRequest>(request), frame);

@@ -54,11 +54,12 @@ struct Places {
   double radius = 0;              ///< radius of that sphere
 };
 
-/// Upper bound of how many points there will be, before any is made.
+/// Upper bound of how many points there will be, before any is made. Throws Error(bad_argument) for an axis or a number of
+/// points or rings that there is not.
 std::size_t count_places(const PlaceRequest& request);
 
 /// Throws Error(bad_argument) for a radius or an extent that is not above 0, and for a length with a unit where the body has
-/// none.
+/// none; what count_places() throws.
 Places find_places(const PlaceRequest& request, const PlaceFrame& frame);
 
 } // namespace cowgpu

@@ -184,9 +184,10 @@ SeriesErrorsResult series_errors(const SeriesErrorsRequest& request, Backend& ba
                                  Monitor& monitor) {
   refuse_coefficients("--errors", request.body.mesh);
   for (const int order : request.orders)
-    if (order > largest_potential_degree)
-      throw Error(Fault::bad_argument, fmt::format("--orders: {} is beyond {}, the largest degree of a potential",
-                                                   order, largest_potential_degree));
+    if (order < 0 || order > largest_potential_degree)
+      throw Error(Fault::bad_argument,
+                  fmt::format("--orders: {} is not from 0 to {}, the largest degree of a potential", order,
+                              largest_potential_degree));
   const LoadedMass loaded = load_mass(request.body, Motion::held, monitor);
   const Body& body = *loaded.mesh;
   return {subject(loaded), loaded.units.stated, body.origin, body.brillouin_radius,

@@ -234,6 +234,10 @@ TEST_CASE("requests of nonsense are refused in words, whoever makes them", "[req
   refused([&] { load_mass(body, Motion::held, monitor); }, "must be finite");
   body.origin = {"moon", {}};
   refused([&] { load_mass(body, Motion::held, monitor); }, "has no point");
+  for (const PlaceRequest& places :
+       {PlaceRequest(PlaneRequest{7, {}, {{1}, true}, 5}), PlaceRequest(PlaneRequest{2, {}, {{1}, true}, 1}),
+        PlaceRequest(SphereRequest{{{2}, true}, 0})})
+    refused([&] { count_places(places); }, "a ");
   TipRequest pushed{box()};
   pushed.friction = nan;
   refused([&] { tip(pushed, *make_cpu_backend(), monitor); }, "friction");
