@@ -31,7 +31,7 @@ enum class Derivatives { none = 0, first = 1, second = 2 };
 /// What is asked for of V(x) = integral of density(y) / |x - y| outside a body, by its moments.
 struct PotentialProblem {
   const Multipoles& moments;
-  int lmax = 0;                 ///< 0 ... min(moments.lmax, largest_potential_degree)
+  int lmax = 0; ///< 0 ... min(moments.lmax, largest_potential_degree)
   Derivatives derivatives = Derivatives::second;
   /// The degrees left out far away add up to at most so much of the bound of all of them; 0: leave out none.
   double cut_off = default_potential_cut_off;

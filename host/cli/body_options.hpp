@@ -15,7 +15,7 @@ struct BodyOptions {
   std::string origin = "com";
   std::string density = "1";
   const Option* density_option = nullptr; ///< null where the command has none
-  bool density_stated = false; ///< by a recipe; else by the option
+  bool density_stated = false;            ///< by a recipe; else by the option
   std::string length_unit, length, axes, rotate;
   bool charge = false;            ///< densities are of charge: C/m3 where units are stated
   std::vector<std::string> parts; ///< FILE=DENSITY each

@@ -67,7 +67,8 @@ void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat f
   sphere.vertices = map.positions;
   sphere.faces = mesh.faces;
   if (format == MapFormat::ply) {
-    std::vector<std::string> comments = {std::string(method_word).append(name(map.method)), std::string(hash_word) + mesh.sha256};
+    std::vector<std::string> comments = {std::string(method_word).append(name(map.method)),
+                                         std::string(hash_word) + mesh.sha256};
     comments.insert(comments.end(), map.notes.begin(), map.notes.end());
     write_ply(sphere, comments, file);
     return;

@@ -27,7 +27,8 @@ void write_map(const ManifoldSurface& surface, const SphereMap& map, MapFormat f
 /// faults of read_ply_positions(); file_format where vertices or faces are not those of the mesh, in number and order,
 /// where the comments that write_map() writes name another mesh's hash or, where `method` is given, another method, or
 /// where a vertex of a face is further than 1e-9 from the unit sphere. Whether it is one-to-one, judge() says.
-SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface, std::optional<MapMethod> method = {});
+SphereMap read_map(const std::filesystem::path& path, const ManifoldSurface& surface,
+                   std::optional<MapMethod> method = {});
 /// The same of the bytes of a file; `name` opens every message.
 SphereMap read_map(std::string_view bytes, const std::string& name, const ManifoldSurface& surface,
                    std::optional<MapMethod> method = {});

@@ -1,9 +1,9 @@
 #include "host/mass/verify.hpp"
 
+#include "host/mass/translate.hpp"
 #include "host/mesh/tensors.hpp"
 #include "host/moment_terms.hpp"
 #include "host/plan/moments.hpp"
-#include "host/mass/translate.hpp"
 
 #include <algorithm>
 #include <cmath>

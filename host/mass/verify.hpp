@@ -2,10 +2,10 @@
 #pragma once
 
 #include "host/backend.hpp"
-#include "host/mesh/body.hpp"
 #include "host/mass/compare.hpp"
 #include "host/mass/error_estimate.hpp"
 #include "host/mass/mass_moments.hpp"
+#include "host/mesh/body.hpp"
 
 #include <cstdint>
 #include <span>

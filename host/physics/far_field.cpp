@@ -1,9 +1,9 @@
 #include "host/physics/far_field.hpp"
 
+#include "host/mass/mass_moments.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/moments.hpp"
-#include "host/mass/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 

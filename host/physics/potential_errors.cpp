@@ -1,9 +1,9 @@
 #include "host/error.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/parallel.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/physics/potential_terms.hpp"
-#include "host/mass/mass_moments.hpp"
 #include "host/sphere_directions.hpp"
 #include "host/sphere_transform.hpp"
 

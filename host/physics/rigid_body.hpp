@@ -2,9 +2,9 @@
 #pragma once
 
 #include "host/coefficient_set.hpp"
-#include "host/multipoles.hpp"
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
+#include "host/multipoles.hpp"
 #include "host/units.hpp"
 
 #include <Eigen/Core>

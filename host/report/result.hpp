@@ -2,12 +2,12 @@
 #pragma once
 
 #include "host/device_facts.hpp"
+#include "host/mass/verify.hpp"
 #include "host/mesh/body.hpp"
 #include "host/mesh/tensors.hpp"
 #include "host/multipoles.hpp"
 #include "host/report/surface_result.hpp"
 #include "host/run_report.hpp"
-#include "host/mass/verify.hpp"
 
 #include <functional>
 #include <string>

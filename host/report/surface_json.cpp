@@ -1,8 +1,8 @@
 #include "host/report/surface_result.hpp"
 
 #include "host/io/number.hpp"
-#include "host/report/json_parts.hpp"
 #include "host/paper/surface_tables.hpp"
+#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "host/map/quality.hpp"
+#include "host/paper/surface_tables.hpp"
 #include "host/report/flow_result.hpp"
 #include "host/spectrum/expand_surface.hpp"
-#include "host/paper/surface_tables.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -17,10 +17,10 @@ namespace cowgpu {
 
 struct SurfaceResult {
   MapMethod of = MapMethod::stretch; ///< whose name is the key among the expansions; not file
-  SphereMap map;                    ///< the map; of the flow: where the mesh's vertices come to, seen from the origin
-  std::string map_file, map_sha256; ///< the file that the map was read from (map.method file), or empty
-  std::string recipe;               ///< "default" or "paper"
-  std::string origin_kind;          ///< as in Body
+  SphereMap map;                     ///< the map; of the flow: where the mesh's vertices come to, seen from the origin
+  std::string map_file, map_sha256;  ///< the file that the map was read from (map.method file), or empty
+  std::string recipe;                ///< "default" or "paper"
+  std::string origin_kind;           ///< as in Body
   std::string length_unit = "the mesh's length unit";
   bool closest_point = false;
   bool beside_paper = false; ///< the paper's recipe on the paper's mesh, to degree 3 at least, with aliasing estimated

@@ -53,8 +53,8 @@ Table shift_table(const TidesResult& t) {
     std::vector<Value> row = {Value(std::string(outwards > 0 ? "+A" : "-A")),
                               Value(std::string(normal > 0 ? "+C" : "-C"))};
     if (found.found)
-      row.insert(row.end(), {double(found.shift[0]), double(found.shift[1]), double(found.shift[2]),
-                             double(found.shift.norm())});
+      row.insert(row.end(),
+                 {double(found.shift[0]), double(found.shift[1]), double(found.shift[2]), double(found.shift.norm())});
     row.resize(table.columns.size());
     table.rows.push_back(row);
   }

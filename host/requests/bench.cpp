@@ -1,9 +1,9 @@
 #include "host/requests/bench.hpp"
 
 #include "host/error.hpp"
-#include "host/mesh/body.hpp"
 #include "host/mass/mass_moments.hpp"
 #include "host/mass/verify.hpp"
+#include "host/mesh/body.hpp"
 
 #include <fmt/format.h>
 

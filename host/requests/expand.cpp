@@ -2,10 +2,10 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/mass/translate.hpp"
 #include "host/plan/moments.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/requests/memory.hpp"
-#include "host/mass/translate.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "host/requests/figure.hpp"
 
 #include "host/error.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/physics/tip.hpp"
 #include "host/requests/surface_source.hpp"
-#include "host/mass/mass_moments.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "host/requests/validate.hpp"
 
+#include "host/mass/translate.hpp"
+#include "host/mass/verify.hpp"
 #include "host/moment_terms.hpp"
 #include "host/plan/moments.hpp"
 #include "host/reference/moments.hpp"
-#include "host/mass/translate.hpp"
-#include "host/mass/verify.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "host/backend.hpp"
-#include "host/mesh/body.hpp"
 #include "host/mass/error_estimate.hpp"
+#include "host/mesh/body.hpp"
 
 #include <string>
 #include <vector>

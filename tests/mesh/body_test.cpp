@@ -1,9 +1,9 @@
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/mass/verify.hpp"
 #include "host/mesh/body.hpp"
 #include "host/mesh/tensors.hpp"
 #include "host/spectrum/rotation.hpp"
-#include "host/mass/verify.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,9 +1,9 @@
 // What is wrong in "Higher multipoles of the cow": each numeric erratum by a second way than the program's own list.
 #include "host/io/mesh_source.hpp"
 #include "host/paper/errata.hpp"
+#include "host/paper/surface_tables.hpp"
 #include "host/physics/radiate.hpp"
 #include "host/requests/errata.hpp"
-#include "host/paper/surface_tables.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/run_program.hpp"
 

@@ -1,8 +1,8 @@
 #include "host/error.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
-#include "host/mass/mass_moments.hpp"
 #include "tests/support/compare_potential.hpp"
 #include "tests/support/meshes.hpp"
 

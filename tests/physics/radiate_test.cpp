@@ -2,10 +2,10 @@
 #include "host/coefficient_set.hpp"
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/paper/printed.hpp"
 #include "host/physics/radiate.hpp"
 #include "host/physics/rigid_body.hpp"
-#include "host/mass/mass_moments.hpp"
 #include "host/units.hpp"
 #include "tests/support/meshes.hpp"
 

@@ -1,10 +1,10 @@
 #include "host/backend.hpp"
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/mesh/tensors.hpp"
 #include "host/physics/rigid_body.hpp"
 #include "host/spectrum/convert.hpp"
-#include "host/mass/mass_moments.hpp"
 #include "tests/support/meshes.hpp"
 
 #include <Eigen/Geometry>

@@ -1,9 +1,9 @@
 #include "host/backend.hpp"
 #include "host/io/mesh_source.hpp"
+#include "host/mass/mass_moments.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/physics/potential_terms.hpp"
-#include "host/mass/mass_moments.hpp"
 #include "tests/support/compare_potential.hpp"
 #include "tests/support/meshes.hpp"
 

@@ -2,8 +2,8 @@
 
 #include "host/backend.hpp"
 #include "host/io/mesh_source.hpp"
-#include "host/spectrum/difference.hpp"
 #include "host/mass/mass_moments.hpp"
+#include "host/spectrum/difference.hpp"
 #include "host/spectrum/roundtrip.hpp"
 #include "tests/support/fields.hpp"
 #include "tests/support/meshes.hpp"
