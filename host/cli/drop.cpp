@@ -66,7 +66,7 @@ Solve add_drop(Command& command, Common& program, BodyOptions&) {
       ->type_name("AXIS,RATE");
   command.add_option("--order", options->order, "Highest degree of the multipoles")
       ->type_name("L")
-      ->check(in_range(2, 64))
+      ->check(in_range(least_multipole_order, largest_multipole_order))
       ->capture_default_str();
   return [options, &program](const PhysicsCall& call) {
     ConsoleMonitor monitor(program.style());

@@ -51,7 +51,7 @@ Solve add_tides(Command& command, Common&, BodyOptions&) {
       ->capture_default_str();
   command.add_option("--order", options->order, "Highest degree of the multipoles; default 6")
       ->type_name("L")
-      ->check(in_range(2, 64));
+      ->check(in_range(least_multipole_order, largest_multipole_order));
   command.add_option("--spin", options->spin, "How fast it spins at first, about C: whether it is caught")
       ->type_name("RATE");
   command

@@ -69,16 +69,15 @@ std::string unit_text(double metres) {
   return metres == 1000 ? "kilometres" : metres == 1 ? "metres" : fmt::format("units of {} m", metres);
 }
 
-// Of a unit `unit` metres long: throws where what was scaled by it left the range of doubles.
-void check_range(const CoefficientSet& set, double unit, const std::string& what) {
-  const auto lost = [](const std::optional<double>& value) { return value && !std::isnormal(*value) && *value != 0; };
-  const auto gone = [&](const std::optional<double>& value) { return value && *value == 0; };
-  if (!(unit > 0) || lost(set.reference_radius) || lost(set.gm) || lost(set.mass) || lost(set.brillouin_radius) ||
-      lost(set.second_moment) || gone(set.reference_radius) || gone(set.gm))
-    throw Error(Fault::bad_argument,
-                fmt::format("--length-unit: in units of {} m {} beyond the range of doubles; state "
-                            "another unit",
-                            unit, what));
+[[noreturn]] void out_of_range(double unit, const std::string& what) {
+  throw Error(
+      Fault::bad_argument,
+      fmt::format("--length-unit: in units of {} m {} beyond the range of doubles; state another unit", unit, what));
+}
+
+// Whether a number leaves the range of doubles when it is scaled.
+bool is_lost(double value, double factor) {
+  return value != 0 && !std::isnormal(value * factor);
 }
 
 } // namespace
@@ -107,9 +106,11 @@ void settle_length_unit(CoefficientSet& set, std::optional<double> metres, bool 
                     in_metres ? fmt::format(", in which R and GM are those of {}", in_metres->name) : "", radius, gm));
   }
   if (unit == 1) return;
+  const double volume = unit * unit * unit;
+  if (!(unit > 0) || is_lost(radius, unit) || is_lost(gm, volume))
+    out_of_range(unit, fmt::format("R = {} and GM = {} are", radius, gm));
   set.reference_radius = radius * unit;
-  set.gm = gm * (unit * unit * unit);
-  check_range(set, unit, fmt::format("R = {} and GM = {} are", radius, gm));
+  set.gm = gm * volume;
 }
 
 void state_length_unit(CoefficientSet& set, double metres, const std::string& file) {
@@ -120,24 +121,29 @@ void state_length_unit(CoefficientSet& set, double metres, const std::string& fi
   const bool lengths = std::find(set.units.begin(), set.units.end(), "length") != set.units.end();
   if (set.kind == CoefficientKind::field && !lengths && !set.origin) refuse("holds no length");
   const double volume = metres * metres * metres;
-  const auto scale = [](std::optional<double>& value, double factor) {
+  const std::string what = fmt::format("numbers of {} are", file);
+  if (!(metres > 0)) out_of_range(metres, what);
+  const auto scale = [&](std::optional<double>& value, double factor) {
+    if (value && is_lost(*value, factor)) out_of_range(metres, what);
     if (value) *value *= factor;
   };
-  if (set.kind == CoefficientKind::potential && set.gm)
-    set.gm = set.mass ? *set.mass * volume * gravitational_constant_si
-                      : *set.gm / set.gravitational_constant.value_or(1) * volume * gravitational_constant_si;
+  if (set.kind == CoefficientKind::potential && set.gm) {
+    const double mass = set.mass ? *set.mass : *set.gm / set.gravitational_constant.value_or(1);
+    if (is_lost(mass, volume * gravitational_constant_si)) out_of_range(metres, what);
+    set.gm = mass * volume * gravitational_constant_si;
+  }
   scale(set.reference_radius, metres);
   scale(set.brillouin_radius, metres);
   scale(set.mass, volume);
   scale(set.second_moment, volume * metres * metres);
   if (set.origin) *set.origin *= metres;
-  check_range(set, metres, fmt::format("numbers of {} are", file));
   const std::size_t count = SphereCoefficients::count(set.lmax);
   for (std::size_t f = 0; f < std::size_t(set.fields); ++f) {
     const double factor = set.kind == CoefficientKind::multipoles ? volume : set.units[f] == "length" ? metres : 1;
     for (std::size_t i = f * count; i < (f + 1) * count; ++i) {
       set.first[i] *= factor;
       set.second[i] *= factor;
+      if (!std::isfinite(set.first[i]) || !std::isfinite(set.second[i])) out_of_range(metres, what);
     }
   }
   set.length_unit = "m";

@@ -1,5 +1,5 @@
-// Every number that the paper "Higher multipoles of the cow" prints and that the program lays beside its own: one table, of
-// which `reproduce`, `errata` and --recipe paper show parts. Its body is the mesh `benchmark`, with density 1, in the mesh's
+// Every number that the paper "Higher multipoles of the cow" prints and that the program lays beside its own: one table.
+// `reproduce`, `errata` and --recipe paper show parts of it. The body is the mesh `benchmark`, with density 1, in the mesh's
 // unit, about the centre of mass, x forward, y up, z to the right, unless a number's item says otherwise.
 #pragma once
 
@@ -20,8 +20,8 @@ struct Printed {
   std::string unit = {};            ///< "erg/s"; empty for the mesh's units with density 1, and where there is none
   std::string reason = {};          ///< why ours differs: a sentence, or empty
   int erratum = 0;                  ///< the erratum that is about it (errata.hpp); 0: none
-  int l = -1, m = 0, field = 0;     ///< of a coefficient: degree, order, and of a surface's which field
-  std::optional<double> value = {}; ///< of a formula: to all digits
+  int l = -1, m = 0, field = 0;     ///< degree and order of a coefficient, and the field of a surface's
+  std::optional<double> value = {}; ///< value of a formula, to all digits
 };
 
 /// All of them, table by table: bounding box, mass multipoles, tensors, radiation, gradient flow, harmonic map, the spectrum,

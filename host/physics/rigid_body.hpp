@@ -33,8 +33,10 @@ struct RigidBody {
   std::optional<double> trace;                          ///< integral of density r^2; coefficients may lack it
   std::optional<Vec3> origin;                           ///< in the body's coordinates; coefficients may lack it
   std::string origin_kind;                              ///< "centre of mass", "mesh", "given", or empty
-  double radius = 0; ///< radius of a sphere about the origin that holds the body; where not known the reference radius,
-  bool radius_known = true; ///< which says how large the body may be, and no more
+  /// Radius of a sphere about the origin that holds the body. Where `radius_known` is false, the reference radius of its
+  /// file, which says no more than how large the body may be.
+  double radius = 0;
+  bool radius_known = true;
 
   int order = 2; ///< the last degree of the moments that counts
   std::shared_ptr<const reference::ExteriorPotential<long double>> higher; ///< degrees 3 to `order`; null where 2
@@ -89,8 +91,8 @@ RigidBody free_body(const CoefficientSet& set, const Units& units, int order);
 /// nothing stands on. Throws what about_centre() and check_weighs() throw.
 RigidBody solid_body(const Body& body);
 
-/// The axes as columns of a rotation matrix, by growing moment of inertia. Of the first two the largest component (the first
-/// of those within 1e-9 of it) is positive; the third is the first cross the second.
+/// The axes as columns of a rotation matrix, by growing moment of inertia. Each of the first two has its largest component
+/// positive (where components are alike to 1e-9, the first of them); the third is the first cross the second.
 struct PrincipalAxes {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   Vec3 quadrupole = Vec3::Zero(); ///< along them, falling

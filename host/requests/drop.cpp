@@ -71,7 +71,7 @@ DropOutcome drop(const DropRequest& request, Monitor& monitor) {
   check_direction(request.feet, "the direction of the feet");
   if (const auto* attitude = std::get_if<physics::LongMat3>(&request.attitude))
     check_rotation(attitude->cast<double>(), "the attitude");
-  check_order(request.order);
+  check_multipole_order(request.order);
   const LoadedMass loaded = load_mass(request.body, Motion::free, monitor);
   require_units(loaded);
   const std::vector<Vec3> vertices = corners_of(*loaded.mesh);

@@ -198,10 +198,10 @@ void require_units(const LoadedMass& loaded) {
                               : "--length-unit (what 1 in the file is)"));
 }
 
-void check_order(int order) {
-  if (order < least_order || order > largest_order)
-    throw Error(Fault::bad_argument,
-                fmt::format("the multipoles' order {} must be from {} to {}", order, least_order, largest_order));
+void check_multipole_order(int order) {
+  if (order < least_multipole_order || order > largest_multipole_order)
+    throw Error(Fault::bad_argument, fmt::format("the multipoles' order {} must be from {} to {}", order,
+                                                 least_multipole_order, largest_multipole_order));
 }
 
 physics::RigidBody rigid_body(const LoadedMass& loaded) {

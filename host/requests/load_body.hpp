@@ -77,10 +77,10 @@ LoadedMass load_mass(const BodyRequest& request, Motion motion, Monitor& monitor
 void require_units(const LoadedMass& loaded);
 
 /// The least and largest order that free_body() is asked for.
-inline constexpr int least_order = 2, largest_order = 64;
+inline constexpr int least_multipole_order = 2, largest_multipole_order = 64;
 
 /// Throws Error(bad_argument) for an order beyond these.
-void check_order(int order);
+void check_multipole_order(int order);
 
 /// To degree 2 about its origin.
 physics::RigidBody rigid_body(const LoadedMass& loaded);

@@ -19,7 +19,7 @@ struct ReconstructRequest {
   unsigned threads = 0;        ///< threads of the distances; 0: all
 };
 
-/// What is done with the body of one order before the next is rebuilt. Of the report all but `orders` is known. Returns the
+/// What is done with the body of one order before the next is rebuilt. All of `report` but its `orders` is known. Returns the
 /// name of the file that the body went to, or "".
 using OrderVisitor =
     std::function<std::string(const ReconstructReport& report, int order, const TriangleSurface& body)>;

@@ -66,7 +66,7 @@ std::vector<AttitudeShift> shifts(const TidesResult& t) {
 
 TidesResult tides(const TidesRequest& request, Monitor& monitor) {
   if (request.attitude) check_rotation(request.attitude->cast<double>(), "the attitude");
-  if (request.order != 0) check_order(request.order);
+  if (request.order != 0) check_multipole_order(request.order);
   for (const auto& [value, what] : {std::pair(request.spin.value_or(1), "the spin"),
                                     std::pair(request.centre.mass(), "the mass at the centre of the orbit")})
     if (!(value > 0) || !std::isfinite(value))
