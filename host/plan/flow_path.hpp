@@ -16,6 +16,7 @@
 #pragma once
 
 #include "host/flow.hpp"
+#include "host/plan/flow_steps.hpp"
 #include "host/plan/flow_surface.hpp"
 
 #include <array>
@@ -85,6 +86,19 @@ public:
 
 private:
   static constexpr int most_contacts = 8, most_faces = 6;
+
+  // Lengths relative to the body's diagonal. Next to the surface, where flows off edges start, they go with the distance.
+  static constexpr double rounding = 1e-13;   ///< what two ways to the same length may differ by
+  static constexpr double tie = 1e-11;        ///< a triangle nearer by so much is an event
+  static constexpr double apart = 1e-9;       ///< a contact farther by so much is none
+  static constexpr double off_surface = 1e-7; ///< where a flow starts that cannot leave along the normal
+  static constexpr double digits = 4e-15;     ///< what doubles can tell
+  static constexpr double same_point = 1e-6;  ///< relative to the distance instead
+  static constexpr double near_share = 1e3;   ///< a length of 1e-3 diagonals and more is not next to the surface
+
+  // Of what Eigen makes of vectors too; shaders/flow.comp does the same operations in the same order.
+  static double norm(const Vec3& a) { return plan::norm<double>(a); }
+  static double square(const Vec3& a) { return dot<double>(a, a); }
 
   /// What the query is for.
   enum class Phase { start, lift, restart, ray, slide, last, done };
