@@ -79,12 +79,12 @@ struct GpuOptions {
   // The same for transforms (shaders/legendre.h, shaders/ring_fourier.h).
   std::uint32_t transform_steps = 0;        ///< steps k unrolled; 8, 16, ... 64
   std::uint32_t transform_rings = 0;        ///< pairs of rings worked on together; 1, 2, 4 or 8
-  std::uint32_t transform_pairs = 0;        ///< pairs of rings a workgroup works on; a multiple of transform_rings
+  std::uint32_t transform_pairs = 0;        ///< pairs of rings a workgroup works on; a multiple of the last, at most 8192
   std::uint64_t transform_binding = 0;      ///< bytes a binding spans at most
   std::uint32_t private_ring_points = 4096; ///< longest ring transformed without buffers between the passes
 };
 
-/// The Vulkan path. Throws Error(no_loader, no_device, no_fp64, device_failed).
+/// The Vulkan path. Throws Error(bad_argument, no_loader, no_device, no_fp64, device_failed).
 std::unique_ptr<Backend> make_gpu_backend(const GpuOptions& options);
 
 /// The Vulkan devices of this machine, best first: discrete, integrated, virtual, software. Empty where there is no

@@ -1,5 +1,6 @@
 #include "host/parallel.hpp"
 
+#include "host/bounds.hpp"
 #include "host/signals.hpp"
 
 #include <sched.h>
@@ -23,7 +24,7 @@ unsigned all_threads() {
 
 void parallel_for(unsigned threads, std::size_t tasks, const std::function<void(std::size_t, unsigned)>& body) {
   if (threads == 0) threads = all_threads();
-  threads = unsigned(std::min<std::size_t>(threads, tasks));
+  threads = unsigned(std::min<std::size_t>(std::min(threads, most_threads), tasks));
   if (threads <= 1) {
     for (std::size_t task = 0; task < tasks; ++task) body(task, 0);
     return;

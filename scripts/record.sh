@@ -379,7 +379,7 @@ record convert-complex convert "$(of expand-files)/m.csv" c.csv --form complex -
 record convert-json convert "$(of expand-files)/m.nc" c.json --kind multipoles --lmax 4
 record convert-nc convert "$(of expand-units)/u.sh" c.nc --rotate 1,0,0 --angle-unit radians
 record convert-field convert "$(of surfaces)/s.json" f.csv --of stretch --field f_r
-record convert-moon convert $in/moon.tab moon.json --length-unit km --brillouin-radius 1740
+record convert-moon convert $in/moon.tab moon.json --length-unit km --brillouin-radius 1740km
 record convert-si convert "$(of expand-files)/m.json" si.gfc --si
 record convert-back convert "$(of convert-sh)/c.sh" back.csv --normalisation unnormalised --phase cs
 record diff diff "$(of expand-units)/u.json" "$(of convert-gfc)/c.gfc"

@@ -23,7 +23,7 @@ if [[ $1 == readers ]]; then
     exit 77
   fi
   build fuzz reader_tests
-  exec build/fuzz/tests/fuzz/reader_tests '~[long]~[alone]~[cli]'
+  exec build/fuzz/tests/fuzz/reader_tests '~[long]~[deep]~[alone]~[cli]'
 fi
 build sanitize all
 ASAN_OPTIONS=detect_leaks=0 exec ctest --test-dir build/sanitize -j"$(nproc)" --output-on-failure --no-tests=error -LE page

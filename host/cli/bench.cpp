@@ -42,10 +42,10 @@ void add_bench(Command& app, Common& common) {
       ->check(in_range(0, largest_degree))
       ->capture_default_str();
   command->add_option("--cut-off", options->request.cut_off, "Cut-off, as in expand")
-      ->check(in_range(0.0, 1e-3))
+      ->check(in_range(0.0, largest_cut_off))
       ->capture_default_str();
   command->add_option("--runs", options->request.runs, "Timed runs of each")
-      ->check(in_range(1, 1000))
+      ->check(in_range(1, most_runs))
       ->capture_default_str();
   command->add_flag("--json", options->json, "As JSON");
   add_common_options(*command, common);

@@ -115,11 +115,6 @@ BodyRequest body_request(const BodyOptions& options) {
   return request;
 }
 
-Body load_body(const BodyOptions& options, std::vector<std::string>& notes) {
-  ConsoleMonitor monitor(ProgressStyle::none);
-  return load_body(body_request(options), notes, monitor);
-}
-
 std::vector<std::string> input_files(const BodyOptions& options) {
   std::vector<std::string> files = {options.mesh};
   for (const std::string& part : options.parts) files.push_back(parse_part(part).mesh);

@@ -28,9 +28,6 @@ void add_body_options(Command& command, BodyOptions& options);
 /// Reads the words. Throws Error(bad_argument) for those that mean nothing or do not go together.
 BodyRequest body_request(const BodyOptions& options);
 
-/// The body of the words, as load_body() of a request has it.
-Body load_body(const BodyOptions& options, std::vector<std::string>& notes);
-
 /// The words for what is read, for refuse_mesh_as_output().
 std::vector<std::string> input_files(const BodyOptions& options);
 std::vector<std::string> input_files(const BodyRequest& request);

@@ -4,7 +4,8 @@
 #include "host/backend.hpp"
 #include "host/cli/console.hpp"
 #include "host/convention.hpp"
-#include "host/mesh/body.hpp"
+#include "host/requests/limits.hpp"
+#include "host/requests/load_body.hpp"
 #include "host/requests/memory.hpp"
 #include "host/types.hpp"
 

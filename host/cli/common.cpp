@@ -1,11 +1,10 @@
 #include "host/cli/commands.hpp"
 
 #include "host/error.hpp"
-#include "host/io/mesh_format.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/shown.hpp"
-#include "host/mesh/builtin.hpp"
 #include "host/number.hpp"
+#include "host/requests/meshes.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +22,7 @@ void add_common_options(Command& command, Common& common) {
 
 void add_run_options(Command& command, Common& common) {
   command.add_option("--threads", common.threads, "Threads of the CPU path (0: all)")
-      ->check(in_range(0U, 4096U))
+      ->check(in_range(0U, most_threads))
       ->capture_default_str();
   command.add_option("--progress", common.progress, "auto (a line on a terminal), none, or jsonl on stderr")
       ->check(one_of({"auto", "none", "jsonl"}))
@@ -93,11 +92,11 @@ void add_convention_options(Command& command, std::string& normalisation, std::s
 
 std::string mesh_help() {
   std::string text = "A file (";
-  for (const auto& format : mesh_formats()) text += fmt::format("{}, ", format.name);
+  for (const std::string& format : mesh_format_names()) text += format + ", ";
   text +=
       "recognised by its content; - is standard input), a name that `cowgpu meshes` lists, such as benchmark (a file "
       "called so is ./benchmark), or a built-in body:";
-  for (const auto& body : builtin_bodies()) text += fmt::format(" builtin:{}", body.usage);
+  for (const std::string& usage : builtin_usages()) text += " " + usage;
   return text;
 }
 

@@ -17,7 +17,7 @@ struct Options {
   std::string of, field;
   std::string kind, form, normalisation, phase;
   std::string input_normalisation, input_phase;
-  std::optional<double> reference_radius, brillouin_radius;
+  std::string reference_radius, brillouin_radius;
   std::optional<int> lmax;
   std::string rotation, angle_unit = "degrees";
   bool si = false;
@@ -31,6 +31,11 @@ EulerAngles angles_of(const Options& options) {
                 fmt::format("--rotate {}: it must be three numbers ALPHA,BETA,GAMMA", options.rotation));
   const long double unit = options.angle_unit == "degrees" ? std::numbers::pi_v<long double> / 180 : 1;
   return {double(angles->x() * unit), double(angles->y() * unit), double(angles->z() * unit)};
+}
+
+std::optional<Measure> radius_of(const char* option, const std::string& text) {
+  if (text.empty()) return {};
+  return parse_measure(option, text, Dimension::length);
 }
 
 std::string described(const CoefficientSet& set) {
@@ -53,13 +58,14 @@ ConvertRequest request_of(const Options& options, CoefficientFormat format) {
   request.field = options.field;
   request.input_normalisation = normalisation_named(options.input_normalisation);
   request.input_phase = phase_named(options.input_phase);
-  request.brillouin_radius = options.brillouin_radius;
+  request.brillouin_radius = radius_of("--brillouin-radius", options.brillouin_radius);
+  request.reference_radius = radius_of("--reference-radius", options.reference_radius);
   request.metres = stated_metres(options.length_unit);
   request.si = options.si;
   if (!options.rotation.empty()) request.rotation = angles_of(options);
   request.rotation_text = options.rotation + " " + options.angle_unit;
   request.target = {kind_named(options.kind),   form_named(options.form), normalisation_named(options.normalisation),
-                    phase_named(options.phase), options.reference_radius, options.lmax};
+                    phase_named(options.phase), {},                        options.lmax};
   request.format = format;
   return request;
 }
@@ -109,13 +115,13 @@ void add_convert(Command& app, Common& common) {
                    ".gfc and .sh hold)")
       ->check(one_of({"multipoles", "potential"}));
   command
-      ->add_option("--reference-radius", options->reference_radius, "Reference radius of OUT, in the length unit of IN")
+      ->add_option("--reference-radius", options->reference_radius, "Reference radius of OUT, in the length unit of IN or with its own, such as 1738km")
       ->type_name("R")
       ->check(not_empty());
   command
       ->add_option("--brillouin-radius", options->brillouin_radius,
-                   "Radius of the sphere about the origin of IN that holds the body, in the length unit of IN, where "
-                   "IN does not say it")
+                   "Radius of the sphere about the origin of IN that holds the body, where IN does not say it; in the length "
+                   "unit of IN, or with its own, such as 1738km, as it must be with --length-unit")
       ->type_name("R")
       ->check(not_empty());
   command

@@ -47,14 +47,14 @@ void run(const Options& options, const Common& common) {
 
   auto start = Clock::now();
   DistanceRequest request;
-  request.mesh = load_mended(options.mesh, options.mending);
+  ConsoleMonitor monitor(common.style());
+  request.mesh = load_mended(options.mesh, options.mending, monitor);
   if (options.grid)
     request.lattice = options.grid;
   else
     request.points = read_points(options.points);
   request.with_sign = !options.without_sign;
   request.threads = common.threads;
-  ConsoleMonitor monitor(common.style());
   DistancePlan plan(std::move(request), monitor);
   plan.result.read_seconds = seconds_since(start);
 
@@ -114,7 +114,7 @@ void add_distance(Command& app, Common& common) {
   command
       ->add_option("--grid", options->grid,
                    "Instead of POINTS a lattice: N points along the longest side of the bounding box enlarged by 1.1")
-      ->check(in_range(std::size_t(2), std::size_t(4096)))
+      ->check(in_range(least_lattice, most_lattice))
       ->type_name("N");
   command
       ->add_option("-o,--output", options->output,

@@ -146,7 +146,8 @@ void run(const Options& options, Common& common) {
   std::string note;
   // While the device opens, which mostly waits for its driver.
   auto opening = std::async(std::launch::async, [&] { return open_backend(common, &note); });
-  Body body = load_body(options.body, notes);
+  ConsoleMonitor monitor(common.style());
+  Body body = load_body(body_request(options.body), notes, monitor);
   if (!body.parts.empty() && !request.expansions.maps.empty())
     notes.push_back("the surface that is mapped and expanded is MESH's alone: parts have mass only");
   const double load_seconds = seconds_since(start);
@@ -157,7 +158,6 @@ void run(const Options& options, Common& common) {
     notes.push_back(note);
   }
   if (options.dry_run) return write_plan(request, body, *backend);
-  ConsoleMonitor monitor(common.style());
   ExpandResult result = expand(request, std::move(body), *backend, monitor, std::move(notes));
   monitor.clear();
   result.command = common.command;
@@ -215,13 +215,13 @@ void add_expand(Command& app, Common& common) {
               "--refinements", options->refinements,
               "flow: of the mesh, for signed sheets and the paper's recipe; each takes four times as long. On the "
               "benchmark at T = 0.2 coefficients to degree 8 are then known to 4e-3 from 3, to 1e-3 from 4")
-          ->check(in_range(1, 5))
+          ->check(in_range(1, most_refinements))
           ->type_name("N")
           ->capture_default_str();
   Option* grid = command
                      ->add_option("--flow-grid", options->flow_grid,
                                   "flow: least degree of the grid on which the level set is met")
-                     ->check(in_range(64, largest_grid_degree))
+                     ->check(in_range(least_flow_grid, largest_grid_degree))
                      ->type_name("N")
                      ->capture_default_str();
   command->add_flag("--aliasing", options->aliasing,
@@ -230,7 +230,7 @@ void add_expand(Command& app, Common& common) {
       ->add_option("--cut-off", options->cut_off,
                    "Leave out, degree by degree, triangles that add up to less than this part of the degree's bound "
                    "(0: none)")
-      ->check(in_range(0.0, 1e-3))
+      ->check(in_range(0.0, largest_cut_off))
       ->capture_default_str();
   command
       ->add_option(

@@ -114,7 +114,7 @@ void add_figure(Command& app, Common& common) {
       ->check(one_of({"default", "paper"}))
       ->capture_default_str();
   command->add_option("--lmax", options->lmax, "Degree of the expansions")
-      ->check(in_range(8, largest_surface_degree))
+      ->check(in_range(least_figure_degree, largest_surface_degree))
       ->type_name("L")
       ->capture_default_str();
   command->add_option("--view", options->view, "View of surfaces: " + view_names() + ", or AZ,EL in degrees")
@@ -124,7 +124,7 @@ void add_figure(Command& app, Common& common) {
       ->type_name("PLANE")
       ->capture_default_str();
   command->add_option("--count", options->lines, "Streamlines")
-      ->check(in_range(std::size_t(1), std::size_t(100'000)))
+      ->check(in_range(std::size_t(1), most_figure_lines))
       ->type_name("N")
       ->capture_default_str();
   add_common_options(*command, common);

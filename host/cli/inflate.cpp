@@ -35,7 +35,8 @@ struct Level {
   std::optional<double> distance; // nothing: the star-shape time
 };
 
-std::vector<Level> parse_levels(const std::string& text) {
+// Each once; a sentence about those that are named again goes to `notes`.
+std::vector<Level> parse_levels(const std::string& text, std::vector<std::string>& notes) {
   std::vector<Level> levels;
   std::istringstream words(text + ",");
   for (std::string word; std::getline(words, word, ',');) {
@@ -49,8 +50,12 @@ std::vector<Level> parse_levels(const std::string& text) {
                         "and star for the least that makes the body star-shaped, separated by commas",
                         shown(text), shown(word)));
     }
-    const bool known = std::any_of(levels.begin(), levels.end(), [&](const Level& l) { return l.key.text == word; });
-    if (!known) levels.push_back(level);
+    const auto known =
+        std::find_if(levels.begin(), levels.end(), [&](const Level& l) { return l.distance == level.distance; });
+    if (known == levels.end())
+      levels.push_back(level);
+    else
+      notes.push_back(fmt::format("--levels {}: {} is {} again, and one level", shown(text), word, known->key.text));
   }
   return levels;
 }
@@ -66,8 +71,9 @@ void draw(const InflateResult& result, const Options& options, Backend& backend,
 }
 
 void run(const Options& options, const Common& common) {
-  std::vector<Level> levels = options.levels.empty() ? std::vector<Level>{} : parse_levels(options.levels);
-  if (levels.empty() && (!options.output.empty() || !options.picture.empty())) levels = parse_levels(star_word);
+  std::vector<std::string> notes;
+  std::vector<Level> levels = options.levels.empty() ? std::vector<Level>{} : parse_levels(options.levels, notes);
+  if (levels.empty() && (!options.output.empty() || !options.picture.empty())) levels = parse_levels(star_word, notes);
   InflateRequest request;
   request.origin = parse_origin(options.origin);
   request.star = options.star;
@@ -85,8 +91,8 @@ void run(const Options& options, const Common& common) {
   std::unique_ptr<AtomicFile> picture;
   if (!options.picture.empty()) picture = std::make_unique<AtomicFile>(options.picture);
 
-  request.mesh = load_mended(options.mesh, options.mending);
   ConsoleMonitor monitor(common.style());
+  request.mesh = load_mended(options.mesh, options.mending, monitor);
   std::string note;
   const auto backend = open_backend(common, &note);
   if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
@@ -103,6 +109,7 @@ void run(const Options& options, const Common& common) {
     monitor.clear();
     if (!body.output.empty() && !common.quiet) say(fmt::format("cowgpu: wrote {}\n", body.output));
   });
+  result.notes.insert(result.notes.end(), notes.begin(), notes.end());
   if (!note.empty()) result.notes.push_back(note);
   if (picture) {
     const auto cpu = faster_drawing(*backend, common);
@@ -143,7 +150,7 @@ void add_inflate(Command& app, Common& common) {
   command->add_option("--format", options->format, "In a folder: glb (default) or ply")->check(one_of({"glb", "ply"}));
   command
       ->add_option("--cells", options->cells, "Cubes along the longest side of the box in which a level is looked for")
-      ->check(in_range(4, 1024))
+      ->check(in_range(least_cells, most_cells))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--picture", options->picture, "The inflated bodies side by side, FILE.png")->type_name("FILE");

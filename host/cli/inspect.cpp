@@ -43,8 +43,8 @@ void run(const Options& options, const Common& common) {
     refuse_mesh_as_output(options.mesh, options.output);
     file = std::make_unique<AtomicFile>(options.output);
   }
-  RawMesh mesh = load_mended(options.mesh, options.mending);
   ConsoleMonitor monitor(common.style());
+  RawMesh mesh = load_mended(options.mesh, options.mending, monitor);
   const Inspection found = inspect(std::move(mesh), monitor, common.threads);
   monitor.clear();
   if (file) {

@@ -2,8 +2,7 @@
 #include "host/cli/commands.hpp"
 
 #include "host/cli/cli11.hpp"
-#include "host/io/mesh_catalogue.hpp"
-#include "host/mesh/builtin.hpp"
+#include "host/requests/meshes.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
@@ -132,10 +131,8 @@ std::string man_page(const CLI::App& app) {
 std::string bash_completion(const CLI::App& app) {
   std::string bodies, paths, cases;
   for (const CatalogueEntry& entry : mesh_catalogue()) bodies += entry.name + " ";
-  for (const auto& body : builtin_bodies()) {
-    const std::string usage(body.usage);
-    bodies += "builtin:" + usage.substr(0, usage.find_first_of(":@[")) + " ";
-  }
+  for (const std::string& usage : builtin_usages())
+    bodies += usage.substr(0, usage.find_first_of(":@[", usage.find(':') + 1)) + " ";
   for (const CLI::App* command : subcommands(app)) {
     paths += "|" + command->get_name() + "|";
     for (const CLI::App* below : subcommands(*command))

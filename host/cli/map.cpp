@@ -114,14 +114,14 @@ void run(const Options& options, const Common& common) {
   if (!options.output.empty()) refuse_mesh_as_output(options.mesh, options.output);
   if (!options.output.empty()) file = std::make_unique<AtomicFile>(options.output);
 
-  request.mesh = load_mended(options.mesh, options.mending);
+  ConsoleMonitor monitor(common.style());
+  request.mesh = load_mended(options.mesh, options.mending, monitor);
   // No Vulkan kernel makes maps: a device is opened only if it is asked for.
   if (common.device != "auto" && common.device != "cpu") {
     const auto backend = open_backend(common, nullptr);
     if (!common.quiet) say(fmt::format("cowgpu: maps are made on the CPU; {} is not used\n", backend->facts().name));
   }
 
-  ConsoleMonitor monitor(common.style());
   MapResult result = make_map(std::move(request), monitor);
   monitor.clear();
   if (file) {
@@ -187,7 +187,7 @@ void add_map(Command& app, Common& common) {
   no_polish->excludes(polish);
   for (Option* own : {weights, pole, scale, centre, polish, no_polish}) recipe->excludes(own);
   Option* sweeps = command->add_option("--sweeps", options->sweeps, "stretch: relaxations of all vertices")
-                       ->check(in_range(0U, 1000000U))
+                       ->check(in_range(0U, most_sweeps))
                        ->type_name("N")
                        ->capture_default_str();
   Option* lambda = command
@@ -204,7 +204,7 @@ void add_map(Command& app, Common& common) {
           ->add_option("--relabellings", options->relabellings,
                        "stretch: map N copies of the body, numbered and turned at random, as well, and count those "
                        "that come to the same map (each takes as long as the first)")
-          ->check(in_range(0U, 10000U))
+          ->check(in_range(0U, most_relabellings))
           ->type_name("N")
           ->capture_default_str();
   Option* time = command

@@ -1,8 +1,5 @@
 #include "host/cli/mend_options.hpp"
 
-#include "host/cli/commands.hpp"
-#include "host/requests/load_body.hpp"
-
 namespace cowgpu::cli {
 
 void add_mend_options(Command& command, Mending& mending) {
@@ -14,11 +11,6 @@ void add_mend_options(Command& command, Mending& mending) {
   command.add_flag("--orient", mending.orient,
                    "Mend: turn faces so that each shell is consistent and looks outwards, cavities inwards");
   command.add_flag("--largest-shell", mending.largest_shell, "Mend: keep the shell of the largest volume only");
-}
-
-RawMesh load_mended(const std::string& name, const Mending& mending) {
-  ConsoleMonitor monitor(ProgressStyle::none);
-  return load_mended(name, mending, monitor);
 }
 
 } // namespace cowgpu::cli

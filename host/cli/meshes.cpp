@@ -1,8 +1,7 @@
 #include "host/cli/commands.hpp"
 #include "host/error.hpp"
-#include "host/io/mesh_catalogue.hpp"
-#include "host/mesh/builtin.hpp"
 #include "host/report/json_parts.hpp"
+#include "host/requests/meshes.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,9 +10,8 @@ namespace cowgpu::cli {
 namespace {
 
 void write_json() {
-  nlohmann::ordered_json named = nlohmann::ordered_json::array(), made = nlohmann::ordered_json::array();
-  for (const CatalogueEntry& e : mesh_catalogue()) {
-    const auto path = find_catalogued(e);
+  nlohmann::ordered_json named = nlohmann::ordered_json::array(), made = builtin_usages();
+  for (const auto& [e, path] : named_meshes()) {
     named.push_back({{"name", e.name},
                      {"path", path ? nlohmann::ordered_json(path->string()) : nlohmann::ordered_json()},
                      {"file", e.file},
@@ -26,16 +24,14 @@ void write_json() {
                      {"scale", e.scale},
                      {"axes", e.axes}});
   }
-  for (const auto& body : builtin_bodies()) made.push_back("builtin:" + std::string(body.usage));
   write_stdout(json_text({{"schema", "cowgpu.meshes.v1"}, {"named", named}, {"builtin", made}}) + "\n");
 }
 
 void write_text() {
   write_stdout("built in, no file needed:\n");
-  for (const auto& body : builtin_bodies()) write_stdout(fmt::format("  builtin:{}\n", body.usage));
+  for (const std::string& usage : builtin_usages()) write_stdout("  " + usage + "\n");
   std::string there, missing;
-  for (const CatalogueEntry& e : mesh_catalogue()) {
-    const auto path = find_catalogued(e);
+  for (const auto& [e, path] : named_meshes()) {
     std::string& text = path ? there : missing;
     text += fmt::format("  {:<18} {} triangles: {}\n", e.name, e.triangles, e.what);
     text += fmt::format("  {:<18} {}; axes: {}; licence: {}\n", "", e.scale, e.axes, e.licence);

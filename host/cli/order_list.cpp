@@ -3,7 +3,7 @@
 #include "host/error.hpp"
 #include "host/io/shown.hpp"
 #include "host/number.hpp"
-#include "host/spectrum/expand_surface.hpp"
+#include "host/requests/limits.hpp"
 
 #include <fmt/format.h>
 

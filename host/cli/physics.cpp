@@ -3,7 +3,6 @@
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
 #include "host/io/mesh_source.hpp"
-#include "host/report/findings_report.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/requests/paper_recipe.hpp"
 

@@ -4,7 +4,7 @@
 #include "host/cli/body_options.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/quantities.hpp"
-#include "host/physics/findings.hpp"
+#include "host/report/findings_report.hpp"
 
 #include <functional>
 

@@ -4,7 +4,6 @@
 
 #include "host/error.hpp"
 #include "host/number.hpp"
-#include "host/plot/plot.hpp"
 #include "host/report/beside_paper.hpp"
 #include "host/report/potential_plot.hpp"
 #include "host/requests/potential.hpp"

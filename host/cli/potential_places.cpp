@@ -16,8 +16,6 @@
 namespace cowgpu::cli {
 namespace {
 
-constexpr int most_along_plane = 8192;
-
 // "1.5R", "2m" or "2"; R is the body's sphere.
 Reach parse_reach(const char* option, const std::string& text) {
   if (text.ends_with('R')) {

@@ -3,7 +3,7 @@
 #include "host/cli/commands.hpp"
 #include "host/error.hpp"
 #include "host/number.hpp"
-#include "host/spectrum/rotation.hpp"
+#include "host/requests/convert.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

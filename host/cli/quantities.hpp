@@ -2,7 +2,7 @@
 #pragma once
 
 #include "host/cli/command_line.hpp"
-#include "host/physics/point_mass.hpp"
+#include "host/requests/tides.hpp"
 #include "host/types.hpp"
 #include "host/units.hpp"
 

@@ -16,15 +16,12 @@ struct Options {
   bool octupole = false;
 };
 
-// A body that turns slower has not turned once in 400 Gyr.
-constexpr double slowest = 5e-19;
-
 double check_rate(double omega, const char* option, const std::string& text) {
-  if (!(omega >= slowest))
+  if (!(omega >= slowest_turn))
     throw Error(Fault::bad_argument,
                 fmt::format("{} {}: {:.3g} rad/s is slower than a turn in 400 Gyr, {} rad/s, which is as slow as this "
                             "goes",
-                            option, text, omega, slowest));
+                            option, text, omega, slowest_turn));
   return omega;
 }
 

@@ -6,7 +6,6 @@
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/requests/reconstruct.hpp"
-#include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
 
@@ -124,7 +123,7 @@ void add_reconstruct(Command& app, Common& common) {
       ->check(in_range(1, largest_grid_degree))
       ->type_name("N");
   command->add_option("--samples", options->samples, "Points of each surface that distances are taken from")
-      ->check(in_range(std::size_t(1), std::size_t(100000000)))
+      ->check(in_range(std::size_t(1), most_samples))
       ->capture_default_str();
   command
       ->add_option("-o,--output", options->output,

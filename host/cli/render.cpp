@@ -6,7 +6,6 @@
 
 #include "host/error.hpp"
 #include "host/io/png.hpp"
-#include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
 

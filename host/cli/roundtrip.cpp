@@ -62,7 +62,7 @@ void add_roundtrip(Command& transform, Common& common) {
       ->check(non_negative_number())
       ->capture_default_str();
   command->add_option("--runs", options->runs, "Timed runs after one to warm up; medians are shown")
-      ->check(in_range(1, 1000))
+      ->check(in_range(1, most_runs))
       ->capture_default_str();
   command->add_flag("--json", options->json,
                     "As JSON on stdout (data/schemas/cowgpu.roundtrip.v1.json), times in seconds");

@@ -58,9 +58,9 @@ void run(const Options& options, const Common& common) {
   if (layout != Layout::none && !to_stdout) file = std::make_unique<AtomicFile>(options.output);
 
   const auto start = Clock::now();
-  request.mesh = load_mended(options.mesh, options.mending);
-  const double load_seconds = seconds_since(start);
   ConsoleMonitor monitor(common.style());
+  request.mesh = load_mended(options.mesh, options.mending, monitor);
+  const double load_seconds = seconds_since(start);
   std::string note;
   const auto backend = open_backend(common, &note);
   StreamlinesResult result = find_streamlines(std::move(request), *backend, monitor);
@@ -124,7 +124,7 @@ void add_streamlines(Command& app, Common& common) {
       ->type_name("X,Y,Z")
       ->capture_default_str();
   command->add_option("--tolerance", options->tolerance, "Error allowed per time on the medial axis")
-      ->check(in_range(1e-12, 1e-2))
+      ->check(in_range(least_tolerance, largest_tolerance))
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "Lines as FILE.csv or FILE.json, or - for CSV on standard output")
       ->type_name("FILE");

@@ -1,7 +1,6 @@
 #include "host/cli/surface_outputs.hpp"
 
 #include "host/error.hpp"
-#include "host/io/glb.hpp"
 #include "host/io/ply.hpp"
 
 #include <fmt/format.h>

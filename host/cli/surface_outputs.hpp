@@ -2,7 +2,7 @@
 #pragma once
 
 #include "host/io/atomic_file.hpp"
-#include "host/mesh/triangle_surface.hpp"
+#include "host/io/glb.hpp"
 
 #include <map>
 #include <memory>

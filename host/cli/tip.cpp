@@ -29,9 +29,6 @@ struct Options {
   std::string plot; // a picture of the boundary, or empty
 };
 
-constexpr double least_force = 1e-30, largest_force = 1e30; // N
-constexpr double shortest_push = 1e-15, longest_push = 1e9; // s
-
 double parse_between(const char* option, const std::string& text, const std::string& part, Dimension dimension,
                      const char* example) {
   const double value = parse_positive(option, part, dimension, example);

@@ -74,7 +74,7 @@ void add_validate(Command& app, Common& common) {
       ->check(in_range(0, largest_degree))
       ->capture_default_str();
   command->add_option("--cut-off", options->cut_off, "Cut-off, as in expand")
-      ->check(in_range(0.0, 1e-3))
+      ->check(in_range(0.0, largest_cut_off))
       ->capture_default_str();
   add_common_options(*command, common);
   command->callback([options, &common] { run(*options, common); });

@@ -1,6 +1,7 @@
 // The CPU path: the verbs of host/backend.hpp on this machine's cores.
 #include "host/backend.hpp"
 
+#include "host/bounds.hpp"
 #include "host/cpu/closest.hpp"
 #include "host/cpu/flow.hpp"
 #include "host/cpu/moments.hpp"
@@ -72,6 +73,7 @@ private:
 } // namespace
 
 std::unique_ptr<Backend> make_cpu_backend(unsigned threads) {
+  require_range("the threads of the CPU path are", threads, 0U, most_threads);
   return std::make_unique<CpuBackend>(threads);
 }
 

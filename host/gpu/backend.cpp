@@ -94,10 +94,12 @@ std::shared_ptr<engine::Gpu> gpu::open_gpu(const GpuOptions& options) {
 }
 
 std::unique_ptr<Backend> gpu::make_backend(std::shared_ptr<engine::Gpu> gpu, const GpuOptions& options) {
+  check(options);
   return translated([&] { return std::make_unique<GpuBackend>(std::move(gpu), options); });
 }
 
 std::unique_ptr<Backend> make_gpu_backend(const GpuOptions& options) {
+  gpu::check(options); // before a device is opened: it needs none
   return gpu::make_backend(gpu::open_gpu(options), options);
 }
 

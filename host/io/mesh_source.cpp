@@ -1,10 +1,12 @@
 #include "host/io/mesh_source.hpp"
 
 #include "host/error.hpp"
+#include "host/io/coefficient_content.hpp"
 #include "host/io/file.hpp"
 #include "host/io/mesh_catalogue.hpp"
 #include "host/io/mesh_format.hpp"
 #include "host/io/sha256.hpp"
+#include "host/io/shown.hpp"
 #include "host/mesh/builtin.hpp"
 
 #include <fmt/format.h>
@@ -22,6 +24,38 @@ void note_file(const std::string& word, RawMesh& mesh) {
   if (std::error_code none; fs::is_regular_file(word, none))
     mesh.notes.push_back(
         fmt::format("{0} is the mesh of that name, not the file {0} in this folder, which is ./{0}", word));
+}
+
+// The name of the schema in a document of ours: "cowgpu.result.v1".
+std::string schema_of(std::string_view json) {
+  const std::size_t begin = json.find("\"cowgpu.");
+  if (begin == std::string_view::npos) return {};
+  const std::size_t end = json.find('"', begin + 1);
+  return end == std::string_view::npos ? "" : shown(json.substr(begin + 1, end - begin - 1), 60);
+}
+
+// Of a file that no reader of meshes takes: that it is one of coefficients, or another document of ours, and what takes it.
+std::string other_content(std::string_view bytes) {
+  const auto format = coefficient_format_in(bytes);
+  if (!format) return {};
+  const std::string schema = format == CoefficientFormat::json ? schema_of(bytes) : "";
+  if (schema.empty() || schema.starts_with("cowgpu.result.") || schema.starts_with("cowgpu.coefficients."))
+    return fmt::format("this file holds coefficients{}, and no mesh: `cowgpu spectrum` and `convert` take them, "
+                       "`reconstruct` and `render` those of a surface, `tensors`, `potential`, `radiate` and `tides` "
+                       "those of a mass",
+                       schema.empty() ? "" : fmt::format(" ({})", schema));
+  return fmt::format("this is a document of cowgpu ({}), and no mesh; name the mesh that it is about", schema);
+}
+
+RawMesh parse(std::string_view bytes, const std::string& name) {
+  try {
+    return parse_mesh(bytes, name);
+  } catch (const Error& error) {
+    if (error.fault() != Fault::file_format && error.fault() != Fault::file_syntax) throw;
+    const std::string other = other_content(bytes);
+    if (other.empty()) throw;
+    throw Error(Fault::file_format, fmt::format("{}: {}", name, other));
+  }
 }
 
 } // namespace
@@ -67,8 +101,8 @@ RawMesh load_mesh(const std::string& word) {
     mesh = parse_mesh(read_catalogued(*entry), word);
     break;
   }
-  case MeshKind::standard_input: return parse_mesh(read_file("/dev/stdin"), "standard input");
-  case MeshKind::file: return parse_mesh(read_file(word), word);
+  case MeshKind::standard_input: return parse(read_file("/dev/stdin"), "standard input");
+  case MeshKind::file: return parse(read_file(word), word);
   }
   note_file(word, mesh);
   return mesh;

@@ -33,6 +33,7 @@ public:
   HeaderReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   PlyHeader read() {
+    header_.lines = 1;
     if (!starts_as_ply(bytes_))
       fail(bytes_.empty() ? Fault::file_truncated : Fault::file_format,
            "this is not a PLY file: its first line is not 'ply'.");
@@ -41,7 +42,6 @@ public:
     if (const std::string_view two = bytes_.substr(end, 2); two == "\r\n" || two == "\n\r") line_end_ = two;
     at_ = after;
     skip_second_half(end);
-    header_.lines = 1;
     format(line());
     for (;;) {
       const auto words = line();

@@ -39,7 +39,7 @@ private:
 };
 
 [[noreturn]] void fail(Fault fault, const RawMesh& mesh, const std::string& sentence) {
-  throw Error(fault, fmt::format("{}: {}", mesh.name, sentence));
+  throw Error(fault, fmt::format("{}: {}", called(mesh), sentence));
 }
 
 std::string shown(const RawMesh& mesh, const EdgeUse& use) {

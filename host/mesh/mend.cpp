@@ -26,14 +26,14 @@ void require_two_faces_at_most(const RawMesh& mesh, std::span<const EdgeUse> use
       throw Error(
           Fault::mesh_edge_manifold,
           fmt::format("{}: --orient: {} names a vertex twice and has no sides to choose from. Remove such faces.",
-                      mesh.name, where(mesh, f)));
+                      called(mesh), where(mesh, f)));
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
     if (edge.size() > 2)
       throw Error(
           Fault::mesh_edge_manifold,
           fmt::format("{}: --orient: the edge between vertices {} and {} has {} faces, the first is {}; which of "
                       "them belong together cannot be told. Separate the sheets by doubling the edge's vertices.",
-                      mesh.name, edge[0].low, edge[0].high, edge.size(), where(mesh, edge[0].face)));
+                      called(mesh), edge[0].low, edge[0].high, edge.size(), where(mesh, edge[0].face)));
   });
 }
 
@@ -73,7 +73,7 @@ std::vector<bool> consistent_flips(const RawMesh& mesh, std::span<const EdgeUse>
               Fault::mesh_unbalanced,
               fmt::format("{}: --orient: the shell of {} has one side only, as a Moebius strip: walking round it "
                           "comes back reversed at the edge between vertices {} and {} ({}). It bounds no body.",
-                          mesh.name, where(mesh, first), own->low, own->high, where(mesh, other->face)));
+                          called(mesh), where(mesh, first), own->low, own->high, where(mesh, other->face)));
         }
       }
   }
@@ -354,7 +354,7 @@ void mend(RawMesh& mesh, const Mending& mending, Monitor& monitor) {
           Fault::mesh_not_finite,
           fmt::format("{}: vertex {} has no finite coordinates; a mesh is mended only where all have. Repair or "
                       "export it again.",
-                      mesh.name, v));
+                      called(mesh), v));
   if (mending.weld) mend_weld(mesh, *mending.weld);
   if (mending.orient) mend_orientation(mesh, monitor);
   if (mending.largest_shell) mend_shells(mesh);

@@ -108,8 +108,12 @@ void require_valid_indices(const RawMesh& mesh) {
       if (vertex >= mesh.vertices.size())
         throw Error(Fault::mesh_index_range,
                     fmt::format("{}: {} names vertex {}, but there {} {}, numbered from 0. Export the mesh again.",
-                                mesh.name, where(mesh, face), vertex, mesh.vertices.size() == 1 ? "is" : "are",
+                                called(mesh), where(mesh, face), vertex, mesh.vertices.size() == 1 ? "is" : "are",
                                 counted(mesh.vertices.size(), "vertex", "vertices")));
+}
+
+std::string called(const RawMesh& mesh) {
+  return mesh.name.empty() ? "the mesh" : mesh.name;
 }
 
 std::string where(const RawMesh& mesh, std::size_t face) {

@@ -67,6 +67,9 @@ std::size_t unused_vertices(std::span<const Face> faces, std::size_t vertex_coun
 /// Throws Error(Fault::mesh_index_range), naming the first face with a vertex that does not exist.
 void require_valid_indices(const RawMesh& mesh);
 
+/// What messages call it: its name, or "the mesh" where it has none, as those made from arrays.
+std::string called(const RawMesh& mesh);
+
 /// "face 33, line 2801": faces count from 0; the line is left out where none is known.
 std::string where(const RawMesh& mesh, std::size_t face);
 

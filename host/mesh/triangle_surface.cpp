@@ -12,9 +12,13 @@
 namespace cowgpu {
 namespace {
 
+std::string called(const TriangleSurface& surface) {
+  return surface.name.empty() ? "the surface" : surface.name;
+}
+
 void check_size(const TriangleSurface& surface, std::size_t size, const std::string& what) {
   if (size != surface.vertices.size())
-    throw Error(Fault::bad_argument, fmt::format("{}: {} {} for {} vertices; there must be one each", surface.name,
+    throw Error(Fault::bad_argument, fmt::format("{}: {} {} for {} vertices; there must be one each", called(surface),
                                                  size, what, surface.vertices.size()));
 }
 
@@ -25,7 +29,7 @@ void check_name(const TriangleSurface& surface, const std::string& name, std::se
   if (name.empty() || !plain || !taken.insert(name).second)
     throw Error(Fault::bad_argument, fmt::format("{}: '{}' cannot name numbers at the vertices: letters, digits and "
                                                  "underscores can, and each name once",
-                                                 surface.name, name));
+                                                 called(surface), name));
 }
 
 } // namespace
@@ -53,15 +57,15 @@ void check(const TriangleSurface& surface) {
     for (const std::uint32_t v : surface.faces[f])
       if (v >= surface.vertices.size())
         throw Error(Fault::mesh_index_range, fmt::format("{}: face {} names vertex {}, but there are {} vertices",
-                                                         surface.name, f, v, surface.vertices.size()));
+                                                         called(surface), f, v, surface.vertices.size()));
   for (std::size_t v = 0; v < surface.vertices.size(); ++v)
     if (!surface.vertices[v].allFinite())
-      throw Error(Fault::mesh_not_finite, fmt::format("{}: vertex {} has no finite coordinates", surface.name, v));
+      throw Error(Fault::mesh_not_finite, fmt::format("{}: vertex {} has no finite coordinates", called(surface), v));
   if (!surface.normals.empty()) check_size(surface, surface.normals.size(), "normals");
   for (std::size_t v = 0; v < surface.normals.size(); ++v)
     if (!(std::abs(surface.normals[v].norm() - 1) <= 1e-6))
       throw Error(surface.normals[v].allFinite() ? Fault::bad_argument : Fault::mesh_not_finite,
-                  fmt::format("{}: the normal of vertex {} is not a unit vector", surface.name, v));
+                  fmt::format("{}: the normal of vertex {} is not a unit vector", called(surface), v));
   std::set<std::string> taken = {"x", "y", "z", "nx", "ny", "nz"};
   for (const VertexScalar& scalar : surface.scalars) {
     check_name(surface, scalar.name, taken);
@@ -69,7 +73,7 @@ void check(const TriangleSurface& surface) {
     for (std::size_t v = 0; v < scalar.values.size(); ++v)
       if (!std::isfinite(scalar.values[v]))
         throw Error(Fault::mesh_not_finite,
-                    fmt::format("{}: {} at vertex {} is not finite", surface.name, scalar.name, v));
+                    fmt::format("{}: {} at vertex {} is not finite", called(surface), scalar.name, v));
   }
 }
 

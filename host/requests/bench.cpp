@@ -4,6 +4,7 @@
 #include "host/mass/mass_moments.hpp"
 #include "host/mass/verify.hpp"
 #include "host/mesh/body.hpp"
+#include "host/requests/limits.hpp"
 
 #include <fmt/format.h>
 
@@ -50,6 +51,9 @@ void time(const MomentProblem& problem, int runs, std::vector<Path>& paths, Moni
 } // namespace
 
 BenchResult bench_moments(BenchRequest request, Backend* device, Monitor& monitor) {
+  for (const int lmax : request.lmax) require_range("the degree is", lmax, 0, largest_degree);
+  require_range("the cut-off is", request.cut_off, 0.0, largest_cut_off);
+  require_range("the timed runs are", request.runs, 1, most_runs);
   const Body body = make_body(ClosedSurface::from(std::move(request.mesh)), {}, 1);
   const auto one = make_cpu_backend(1), all = make_cpu_backend(request.threads);
   std::vector<Path> paths = {{"CPU, one thread", one.get(), {}, {}}, {"CPU, all threads", all.get(), {}, {}}};

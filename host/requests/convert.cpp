@@ -1,5 +1,6 @@
 #include "host/requests/convert.hpp"
 
+#include "host/bounds.hpp"
 #include "host/error.hpp"
 #include "host/io/coefficient_metadata.hpp"
 
@@ -61,6 +62,21 @@ void state_si(CoefficientSet& set) {
   if (set.kind == CoefficientKind::potential && set.mass) set.gm = *set.mass * gravitational_constant_si;
 }
 
+// A radius in the numbers of the set.
+double radius_of(const char* option, const Measure& radius, const ConvertRequest& request, const CoefficientSet& set) {
+  if (radius.has_unit && !set.in_metres())
+    throw Error(Fault::bad_argument,
+                fmt::format("{} {} m: a length with a unit needs that of {}: add --length-unit, or give a bare number "
+                            "in the file's unit",
+                            option, radius.value, request.input.string()));
+  if (!radius.has_unit && request.metres)
+    throw Error(Fault::bad_argument,
+                fmt::format("{0} {1}: with --length-unit it needs a unit of its own, since {1} of the file's unit and "
+                            "{1} m differ: such as {1}km or {1}m",
+                            option, radius.value));
+  return radius.value;
+}
+
 // The sphere that holds the body, where the file does not say it.
 void state_radius(double radius, const std::string& file, CoefficientSet& set) {
   if (set.kind == CoefficientKind::field)
@@ -74,16 +90,29 @@ void state_radius(double radius, const std::string& file, CoefficientSet& set) {
   set.brillouin_radius = radius;
 }
 
+void check(const ConvertRequest& request) {
+  const ConversionTarget& target = request.target;
+  require_member("the kind is", target.kind.value_or(CoefficientKind::field), CoefficientKind::potential);
+  require_member("the form is", target.form.value_or(Form::real), Form::complex);
+  for (const auto& normalisation : {target.normalisation, request.input_normalisation})
+    require_member("the normalisation is", normalisation.value_or(Normalisation::four_pi), Normalisation::unnormalised);
+  for (const auto& phase : {target.phase, request.input_phase})
+    require_member("the phase is", phase.value_or(Phase::none), Phase::none);
+  require_member("the format is", request.format, CoefficientFormat::shtools);
+}
+
 } // namespace
 
 ConvertResult convert(const ConvertRequest& request, Monitor& monitor, unsigned threads) {
+  check(request);
   const std::string input = request.input.string();
   ConvertResult result;
   result.input = read_in_unit(request.input, request.of, request.metres);
   state_convention(request, result.input);
   CoefficientSet set = result.input;
   if (request.si) state_si(set);
-  if (request.brillouin_radius) state_radius(*request.brillouin_radius, input, set);
+  if (request.brillouin_radius)
+    state_radius(radius_of("--brillouin-radius", *request.brillouin_radius, request, set), input, set);
   if (!request.field.empty()) set = single_field(set, request.field);
   if (const auto lmax = request.target.lmax) {
     if (*lmax > set.lmax)
@@ -99,7 +128,10 @@ ConvertResult convert(const ConvertRequest& request, Monitor& monitor, unsigned 
     set.remarks.emplace_back(fmt::format("rotation_{}", set.remarks.size() + 1),
                              fmt::format("R_z(A) R_y(B) R_z(C) about the origin, A,B,C = {}", request.rotation_text));
   }
-  result.output = converted(set, target_of(request, set));
+  ConversionTarget target = target_of(request, set);
+  if (request.reference_radius)
+    target.reference_radius = radius_of("--reference-radius", *request.reference_radius, request, set);
+  result.output = converted(set, target);
   result.notes = std::move(set.notes);
   return result;
 }

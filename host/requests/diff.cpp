@@ -1,11 +1,14 @@
 #include "host/requests/diff.hpp"
 
+#include "host/bounds.hpp"
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/length_unit.hpp"
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/convert.hpp"
+
+#include <limits>
 
 namespace cowgpu {
 namespace {
@@ -23,6 +26,9 @@ CoefficientSet read(const DiffRequest& request, const std::filesystem::path& pat
 } // namespace
 
 DiffResult diff(const DiffRequest& request) {
+  require_member("the normalisation is", request.convention.normalisation, Normalisation::unnormalised);
+  require_member("the phase is", request.convention.phase, Phase::none);
+  require_range("the tolerance is", request.tolerance.value_or(0), 0.0, std::numeric_limits<double>::max());
   bool unit_used = false;
   const CoefficientSet a = read(request, request.first, unit_used), b = read(request, request.second, unit_used);
   if (request.metres && !unit_used) throw Error(Fault::bad_argument, "--length-unit: both files are in metres already");

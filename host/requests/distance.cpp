@@ -5,6 +5,7 @@
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
 #include "host/mesh/winding_notes.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,8 @@
 namespace cowgpu {
 
 DistancePlan::DistancePlan(DistanceRequest request, Monitor& monitor) {
+  if (request.lattice)
+    require_range("the points along a side of the lattice are", *request.lattice, least_lattice, most_lattice);
   const auto start = Clock::now();
   result.with_sign = request.with_sign;
   if (request.with_sign) {
@@ -23,9 +26,6 @@ DistancePlan::DistancePlan(DistanceRequest request, Monitor& monitor) {
     result.mesh = std::move(request.mesh);
     result.notes = result.mesh.notes;
   }
-  if (request.lattice && *request.lattice < 2)
-    throw Error(Fault::bad_argument,
-                fmt::format("a lattice with {} points along a side: it has 2 at least", *request.lattice));
   if (request.lattice) {
     const Box box = bounding_box(result.mesh.vertices, result.mesh.faces);
     result.lattice = lattice_about(box.min, box.max, lattice_enlargement, *request.lattice);

@@ -5,6 +5,7 @@
 #include "host/mass/translate.hpp"
 #include "host/plan/moments.hpp"
 #include "host/report/json_parts.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -22,9 +23,9 @@ std::vector<MomentProblem> problems_of(const ExpandRequest& request, const Body&
 
 void check(const ExpandRequest& request) {
   check_expansions(request.expansions);
-  if (request.expansions.lmax < 0 || request.expansions.lmax > largest_degree)
-    throw Error(Fault::bad_argument,
-                fmt::format("bodies are expanded to degree 0 to {}, not {}", largest_degree, request.expansions.lmax));
+  require_range("the degree is", request.expansions.lmax, 0, largest_degree);
+  require_range("the cut-off is", request.cut_off, 0.0, largest_cut_off);
+  require_member("the check of the moments is", request.verify, Verify::full);
 }
 
 // The result, and either the computation or its check.

@@ -11,6 +11,7 @@
 #include "host/map/stretch.hpp"
 #include "host/mesh/half_edges.hpp"
 #include "host/requests/expand_flow.hpp"
+#include "host/requests/limits.hpp"
 
 #include <fmt/format.h>
 
@@ -85,9 +86,11 @@ void check_expansions(const ExpansionChoice& choice) {
     if (std::find(made_maps.begin(), made_maps.end(), choice.maps[i]) == made_maps.end() ||
         std::find(choice.maps.begin() + std::ptrdiff_t(i) + 1, choice.maps.end(), choice.maps[i]) != choice.maps.end())
       throw Error(Fault::bad_argument, "maps are some of harmonic, stretch, smooth and flow, each once");
-  if (flow && (choice.flow.grid_degree < 0 || choice.flow.grid_degree > largest_grid_degree))
-    throw Error(Fault::bad_argument,
-                fmt::format("the grid's degree {} must be from 0 to {}", choice.flow.grid_degree, largest_grid_degree));
+  if (flow) {
+    require_member("the meaning of the flow is", choice.flow.meaning, FlowMeaning::steps);
+    require_range("the degree of the flow's grid is", choice.flow.grid_degree, least_flow_grid, largest_grid_degree);
+    require_range("the refinements of the mesh are", choice.flow.refinements, 1, most_refinements);
+  }
   if (!choice.map_file.empty() && (choice.maps.size() != 1 || flow))
     throw Error(Fault::bad_argument,
                 fmt::format("--map {}: the file is one map, and --of {} asks for {}; name the one that it stands for "

@@ -2,7 +2,9 @@
 
 #include "host/error.hpp"
 #include "host/mass/mass_moments.hpp"
+#include "host/mesh/topology.hpp"
 #include "host/physics/tip.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
@@ -52,7 +54,7 @@ plot::Canvas of_results(const Drawing& on) {
     if (!hash.empty() && hash != on.mesh().sha256)
       throw Error(Fault::file_format, fmt::format("--result {}: it is of {}, another mesh than {} by its SHA-256; name "
                                                   "that mesh, or expand this one",
-                                                  file, sources.back().mesh, on.mesh().name));
+                                                  file, sources.back().mesh, called(on.mesh())));
   }
   if (on.request.kind == FigureKind::orders) return orders(on, sources[0].expansion, sources[0].name);
   std::vector<figures::NamedExpansion> named;
@@ -138,6 +140,11 @@ bool lines_alone(FigureKind kind) {
 
 FigureResult make_figure(FigureRequest request, Backend& backend, Monitor& monitor) {
   const ExpansionChoice& choice = request.expansions;
+  require_member("the figure is", request.kind, FigureKind::tipping);
+  require_member("the format is", request.format, plot::PictureFormat::svg);
+  require_range("the streamlines are", request.streamlines, std::size_t(1), most_figure_lines);
+  if (request.results.empty() && (choice.mass || !choice.maps.empty()))
+    require_range("the degree is", choice.lmax, least_figure_degree, largest_surface_degree);
   if (of_one_map(request.kind) && request.results.empty() && (choice.maps.size() != 1 || choice.mass))
     throw Error(Fault::bad_argument, "this figure is of one map: harmonic, stretch, smooth or flow");
   const Body body = make_body(ClosedSurface::from(std::move(request.mesh)), {}, 1);

@@ -2,8 +2,10 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/mesh/topology.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/requests/expand_flow.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -20,9 +22,9 @@ std::string coarse_note(const InflatedBody& body, int cells) {
                                body.error.area_error / body.audit.area);
   if (part <= 0.01) return {};
   const double wanted = std::ceil(cells * body.report.cell / body.level);
-  const std::string cure = cells >= 1024    ? "take a longer level"
-                           : wanted > cells ? fmt::format("take --cells {:.0f}", std::min(wanted, 1024.))
-                                            : fmt::format("take --cells {}", std::min(2 * cells, 1024));
+  const std::string cure = cells >= most_cells    ? "take a longer level"
+                           : wanted > cells ? fmt::format("take --cells {:.0f}", std::min(wanted, double(most_cells)))
+                                            : fmt::format("take --cells {}", std::min(2 * cells, most_cells));
   return fmt::format(
       "the level {:.6g} is found in cubes of {:.3g}, and its volume and area are known only to {:.2g} %; {}",
       body.level, body.report.cell, 100 * part, cure);
@@ -38,7 +40,7 @@ double level_of(const std::optional<double>& given, const InflateResult& result)
         fmt::format(
             "--levels star: {} is star-shaped about ({:.6g}, {:.6g}, {:.6g}) as it is, or nearly, t* <= {:.3g}: "
             "there is nothing to show; name levels by numbers, or another --origin",
-            body.surface.mesh().name, body.origin.x(), body.origin.y(), body.origin.z(), result.star->upper));
+            called(body.surface.mesh()), body.origin.x(), body.origin.y(), body.origin.z(), result.star->upper));
   const double level = given ? *given : flow_time(0, *result.star);
   if (!(level >= 1e-4 * longest && level <= 1e4 * longest))
     throw Error(Fault::bad_argument,
@@ -54,7 +56,7 @@ InflatedBody inflated(double level, int cells, const Body& body, DistanceField& 
   result.surface = level_surface(field, body.box.min, body.box.max, level, cells, monitor, &result.report);
   result.error =
       level_surface_error(field, body.box.min, body.box.max, level, cells, result.surface, result.report, monitor);
-  result.surface.name = fmt::format("{} inflated by {:.6g}", body.surface.mesh().name, level);
+  result.surface.name = fmt::format("{} inflated by {:.6g}", called(body.surface.mesh()), level);
   RawMesh found;
   found.vertices = result.surface.vertices;
   found.faces = result.surface.faces;
@@ -82,8 +84,7 @@ MemoryNeed inflate_memory(const InflateRequest& request, const Backend& backend)
 
 InflateResult inflate(InflateRequest request, Backend& backend, Monitor& monitor,
                       const std::function<void(InflatedBody&)>& done) {
-  if (request.cells < 1)
-    throw Error(Fault::bad_argument, fmt::format("a level in {} cells: there is 1 at least", request.cells));
+  require_range("the cubes along the longest side are", request.cells, least_cells, most_cells);
   check_memory(inflate_memory(request, backend), backend, "lower --cells");
   InflateResult result{make_body(ClosedSurface::from(std::move(request.mesh)), request.origin, 1), backend.facts()};
   const Body& body = result.body;

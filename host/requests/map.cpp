@@ -6,6 +6,7 @@
 #include "host/mesh/half_edges.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/requests/expand_flow.hpp"
+#include "host/requests/limits.hpp"
 
 #include <fmt/format.h>
 
@@ -40,9 +41,21 @@ struct Maker {
   }
 };
 
+void check(const MapRequest& request) {
+  require_range("the degree of the grid that a map is judged against is", request.lmax, 1, largest_grid_degree);
+  require_range("the copies of the body are", request.relabellings, 0U, most_relabellings);
+  if (const auto* stretch = std::get_if<StretchOptions>(&request.method))
+    require_range("the sweeps are", stretch->sweeps, 0U, most_sweeps);
+  if (const auto* harmonic = std::get_if<HarmonicOptions>(&request.method)) {
+    require_member("the weights of edges are", harmonic->weights, EdgeWeights::tutte);
+    require_member("the rule for the pole is", harmonic->pole.rule, Pole::Rule::back);
+  }
+}
+
 } // namespace
 
 MapResult make_map(MapRequest request, Monitor& monitor) {
+  check(request);
   MapResult result{ManifoldSurface::from(ClosedSurface::from(std::move(request.mesh)))};
   const ManifoldSurface& surface = result.surface;
   require_sphere(surface);

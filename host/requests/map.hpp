@@ -28,7 +28,8 @@ struct MapRequest {
   unsigned threads = 0; ///< 0: all
 };
 
-/// Maps on the CPU, for which no device has a kernel, and judges. Throws what ClosedSurface::from(), ManifoldSurface::from(),
+/// Maps on the CPU, for which no device has a kernel, and judges. Throws Error(bad_argument) for numbers beyond
+/// host/requests/limits.hpp, what ClosedSurface::from(), ManifoldSurface::from(),
 /// require_sphere() and the maps throw.
 MapResult make_map(MapRequest request, Monitor& monitor);
 

@@ -1,14 +1,13 @@
 #include "host/requests/places.hpp"
 
 #include "host/error.hpp"
+#include "host/requests/limits.hpp"
 #include "host/sphere_directions.hpp"
 
 #include <fmt/format.h>
 
 namespace cowgpu {
 namespace {
-
-constexpr int largest_side = 20000; // of a plane, in points
 
 double length_of(const char* option, const Reach& reach, const PlaceFrame& frame) {
   if (reach.radii) return reach.length.value * frame.radius;
@@ -63,11 +62,11 @@ void check_counts(const PlaceRequest& request) {
     throw Error(Fault::bad_argument,
                 fmt::format("a sphere of {} rings: there are from 1 to {}", sphere->rings, largest_grid_degree + 1));
   const auto* plane = std::get_if<PlaneRequest>(&request);
-  if (plane && (plane->axis < 0 || plane->axis > 2 || plane->count < 2 || plane->count > largest_side))
+  if (plane && (plane->axis < 0 || plane->axis > 2 || plane->count < 2 || plane->count > most_along_plane))
     throw Error(Fault::bad_argument,
                 fmt::format("a plane across axis {} with {} points a side: axes are 0, 1 and 2, and "
                             "sides have from 2 to {} points",
-                            plane->axis, plane->count, largest_side));
+                            plane->axis, plane->count, most_along_plane));
 }
 
 } // namespace

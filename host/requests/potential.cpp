@@ -4,6 +4,7 @@
 #include "host/io/coefficient_content.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/report/result.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -148,6 +149,8 @@ int degree_wanted(const LoadedMass& input, const PotentialRequest& request) {
 } // namespace
 
 PotentialResult potential(const PotentialRequest& request, Backend& backend, unsigned threads, Monitor& monitor) {
+  require_range("the degree of the series is", std::max(request.lmax, 0), 0, largest_potential_degree);
+  require_member("the derivatives are", request.derivatives, Derivatives::second);
   if (request.exact || request.inside_exact)
     refuse_coefficients(request.exact ? "--exact" : "--inside exact", request.body.mesh);
   const LoadedMass loaded = load_mass(request.body, Motion::held, monitor);

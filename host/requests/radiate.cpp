@@ -1,5 +1,6 @@
 #include "host/requests/radiate.hpp"
 
+#include "host/bounds.hpp"
 #include "host/error.hpp"
 #include "host/mass/mass_moments.hpp"
 #include "host/mesh/tensors.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace cowgpu {
@@ -75,9 +77,9 @@ void check_mass(const RigidBody& body, const Vec3& axis) {
 
 RadiationResult radiate(const RadiateRequest& request, Monitor& monitor) {
   check_direction(request.axis, "the axis");
-  if (!std::isfinite(request.omega) || !std::isfinite(request.time))
-    throw Error(Fault::bad_argument,
-                fmt::format("{} rad/s for {} s: both must be finite", request.omega, request.time));
+  constexpr double most = std::numeric_limits<double>::max();
+  require_range("the rad/s of the turn are", request.omega, slowest_turn, most);
+  require_range("the seconds of the turn are", request.time, 0.0, most);
   const LoadedMass loaded = load_mass(request.body, Motion::free, monitor);
   RadiationResult r;
   r.subject = subject(loaded);

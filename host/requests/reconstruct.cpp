@@ -4,6 +4,7 @@
 #include "host/error.hpp"
 #include "host/io/surface_file.hpp"
 #include "host/report/json_parts.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -57,14 +58,13 @@ RebuiltOrder rebuild(const ReconstructRequest& request, const ReconstructReport&
 } // namespace
 
 void check_reconstruct(const ReconstructRequest& request) {
-  constexpr std::size_t most_samples = 100'000'000;
-  if (request.resolution < 0 || request.samples > most_samples ||
-      std::adjacent_find(request.orders.begin(), request.orders.end(), std::greater<>()) != request.orders.end() ||
+  require_member("the fields are", request.fields, SurfaceFields::f);
+  require_range("the resolution is", request.resolution, 0, largest_grid_degree);
+  require_range("the samples are", request.samples, std::size_t(1), most_samples);
+  if (std::adjacent_find(request.orders.begin(), request.orders.end(), std::greater<>()) != request.orders.end() ||
       (!request.orders.empty() && request.orders.front() < 0))
     throw Error(Fault::bad_argument,
-                fmt::format("orders {} at resolution {} with {} samples: orders ascend from 0 on, a "
-                            "resolution is not below 0, and there are at most {} samples",
-                            fmt::join(request.orders, ","), request.resolution, request.samples, most_samples));
+                fmt::format("orders {}: they must ascend from 0 on", fmt::join(request.orders, ",")));
   check_surface_choice(request.source, largest_order(request));
   const int largest = request.orders.empty() ? 8 : request.orders.back();
   if (request.resolution > 0 && request.resolution < largest)

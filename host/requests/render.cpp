@@ -7,6 +7,7 @@
 #include "host/mesh/topology.hpp"
 #include "host/mesh/triangle_surface.hpp"
 #include "host/mesh/winding_notes.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -77,6 +78,8 @@ Image draw_picture(const PictureRequest& request, Backend& backend, Monitor& mon
 }
 
 void check_render(const RenderRequest& request) {
+  require_member("the fields are", request.fields, SurfaceFields::f);
+  require_range("the resolution is", request.resolution, 0, largest_grid_degree);
   const int largest = largest_order(request);
   if (request.rebuilds()) check_surface_choice(request.source, largest);
   if (request.resolution > 0 && request.resolution < largest)

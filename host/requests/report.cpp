@@ -1,10 +1,12 @@
 #include "host/requests/report.hpp"
 
+#include "host/bounds.hpp"
 #include "host/error.hpp"
 #include "host/io/foreign_file.hpp"
 #include "host/io/result_json.hpp"
 #include "host/io/shown.hpp"
 #include "host/map/map_method.hpp"
+#include "host/mesh/topology.hpp"
 
 #include <fmt/format.h>
 
@@ -75,7 +77,7 @@ std::unique_ptr<DistanceField> add_mesh(RawMesh mesh, const std::string& file, B
   document.mesh_name = report.mesh.name;
   const auto hash = "/mesh/sha256"_json_pointer;
   if (!report.result.contains(hash) || report.result.at(hash) != report.mesh.sha256) {
-    report.warning = fmt::format("{} has another SHA-256 than the mesh that was expanded", report.mesh.name);
+    report.warning = fmt::format("{} has another SHA-256 than the mesh that was expanded", called(report.mesh));
     document.notes.push_back(report.warning);
   }
   if (report.mesh.faces.size() <= largest_mesh) {
@@ -92,6 +94,7 @@ int order_of(const ReportRequest& request, const Report& report) {
   int most = 0;
   for (const SurfaceFile& surface : report.surfaces) most = std::max(most, surface.expansion.coefficients.lmax);
   if (!request.order) return std::min(most, usual_report_order);
+  require_range("the largest order is", *request.order, 0, largest_report_order);
   if (*request.order > most && !report.surfaces.empty())
     throw Error(Fault::bad_argument, fmt::format("the order {} cannot be shown: {} holds degrees 0 to {}; expand to a "
                                                  "higher lmax",

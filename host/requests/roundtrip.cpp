@@ -2,6 +2,7 @@
 
 #include "host/clock.hpp"
 #include "host/report/json_parts.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 
 #include <sys/resource.h>
@@ -29,6 +30,8 @@ TransformReport median(std::vector<TransformReport> reports) {
 } // namespace
 
 RoundtripResult plan_roundtrip(const RoundtripRequest& request, const Backend& backend) {
+  require_range("the fields are", request.fields, 1, most_fields);
+  require_range("the timed runs are", request.runs, 1, most_runs);
   const auto start = Clock::now();
   RoundtripResult result;
   result.created = utc_now();

@@ -4,13 +4,16 @@
 #include "host/error.hpp"
 #include "host/mesh/closed_surface.hpp"
 #include "host/mesh/geometry.hpp"
+#include "host/mesh/topology.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/requests/expand_flow.hpp"
+#include "host/requests/limits.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cowgpu {
 namespace {
@@ -22,7 +25,7 @@ StreamlineStarts starts_of(const StreamlinesRequest& request, const RawMesh& mes
       throw Error(Fault::mesh_empty,
                   fmt::format("no vertex of {} lies within {} of the plane: start at vertices farther from it, or on "
                               "the cut",
-                              mesh.name, *request.within));
+                              called(mesh), *request.within));
     return starts;
   }
   double length = 0;
@@ -36,9 +39,19 @@ StreamlineStarts starts_of(const StreamlinesRequest& request, const RawMesh& mes
   return starts_along(table.cut, std::size_t(count), mesh.vertices, mesh.faces);
 }
 
+void check(const StreamlinesRequest& request) {
+  constexpr double largest = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::min();
+  require_range("the lines are", request.count, std::size_t(1), most_streamlines);
+  if (request.time) require_range("the time is", *request.time, least, largest);
+  if (request.space) require_range("the spacing is", *request.space, least, largest);
+  if (request.within) require_range("the distance of vertices from the plane is", *request.within, 0.0, largest);
+  require_range("the tolerance is", request.tolerance, least_tolerance, largest_tolerance);
+}
+
 } // namespace
 
 StreamlinesResult find_streamlines(StreamlinesRequest request, Backend& backend, Monitor& monitor) {
+  check(request);
   auto start = Clock::now();
   StreamlinesResult result;
   result.device = backend.facts();
@@ -60,7 +73,7 @@ StreamlinesResult find_streamlines(StreamlinesRequest request, Backend& backend,
     throw Error(Fault::mesh_empty,
                 fmt::format("the plane {:.6g} x + {:.6g} y + {:.6g} z = {:.6g} misses {}, whose box goes from ({:.6g}, "
                             "{:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}): choose another plane",
-                            p.normal.x(), p.normal.y(), p.normal.z(), p.offset, mesh.name, box.min.x(), box.min.y(),
+                            p.normal.x(), p.normal.y(), p.normal.z(), p.offset, called(mesh), box.min.x(), box.min.y(),
                             box.min.z(), box.max.x(), box.max.y(), box.max.z()));
   }
   table.starts = starts_of(request, mesh, table);

@@ -8,9 +8,6 @@
 
 namespace cowgpu {
 
-/// Most lines that are drawn at once.
-inline constexpr std::size_t most_streamlines = 1'000'000;
-
 struct StreamlinesRequest {
   RawMesh mesh;
   Plane plane;

@@ -3,8 +3,10 @@
 #include "host/error.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/surface_file.hpp"
+#include "host/mesh/topology.hpp"
 #include "host/mesh/winding_notes.hpp"
 #include "host/requests/expand_surfaces.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
@@ -41,7 +43,7 @@ SurfaceSource from_file(const SurfaceChoice& choice, Monitor& monitor) {
   const RawMesh& mesh = source.body->surface.mesh();
   source.notes = body_notes(source.body->surface, monitor);
   if (mesh.sha256 != source.mesh_hash)
-    source.notes.push_back(fmt::format("{} has another SHA-256 than the mesh that was expanded", mesh.name));
+    source.notes.push_back(fmt::format("{} has another SHA-256 than the mesh that was expanded", called(mesh)));
   return source;
 }
 
@@ -68,6 +70,7 @@ SurfaceSource from_mesh(const SurfaceChoice& choice, int largest_order, Backend&
 } // namespace
 
 void check_surface_choice(const SurfaceChoice& choice, int largest_order) {
+  require_range("the degree is", std::max(choice.lmax, 0), 0, largest_surface_degree);
   if (is_result_file(choice.input)) {
     if (choice.lmax >= 0)
       throw Error(Fault::bad_argument,

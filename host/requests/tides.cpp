@@ -1,11 +1,13 @@
 #include "host/requests/tides.hpp"
 
 #include "host/error.hpp"
+#include "host/physics/radiate.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace cowgpu {
 
@@ -40,6 +42,23 @@ void add_notes(const TidesRequest& request, const LoadedMass& loaded, TidesResul
     t.subject.notes.push_back(fmt::format(
         "an orbit of this radius runs inside the {}, whose radius is {:g} km and which is taken for a point",
         t.centre.name, t.centre.radius / 1e3));
+}
+
+// The mechanics here is Newton's.
+void check_speed(double speed, const std::string& what, const char* cure, std::vector<std::string>& notes) {
+  if (speed >= speed_of_light_si)
+    throw Error(Fault::bad_argument,
+                fmt::format("{} moves at {:.3g} m/s, faster than light: {}", what, speed, cure));
+  if (speed >= 0.1 * speed_of_light_si)
+    notes.push_back(fmt::format("{} moves at {:.2g} of the speed of light, and the formulas are for slow ones", what,
+                                speed / speed_of_light_si));
+}
+
+void check_speeds(const TidesRequest& request, TidesResult& t) {
+  check_speed(t.orbit.rate * request.radius, "the body on its orbit", "lower --mass or take a wider --orbit",
+              t.subject.notes);
+  if (request.spin && t.body.radius_known)
+    check_speed(*request.spin * t.body.radius, "the rim of the spinning body", "lower --spin", t.subject.notes);
 }
 
 void add_locking(const TidesRequest& request, TidesResult& t) {
@@ -80,6 +99,7 @@ TidesResult tides(const TidesRequest& request, Monitor& monitor) {
   t.body = free_body(loaded, order_of(loaded, request.order, t.subject.notes), monitor);
   t.principal = principal_axes(t.body);
   t.orbit = circular_orbit(t.centre, t.body, request.radius);
+  check_speeds(request, t);
   add_notes(request, loaded, t);
   t.isotropic = is_isotropic(t.principal);
   t.stable = libration(t.principal, t.orbit, {0, 1, 2});

@@ -19,7 +19,7 @@ struct TidesRequest {
 };
 
 /// Throws what load_mass(), free_body(), physics::circular_orbit() and physics::locking_time() throw, Error(bad_argument)
-/// without units, and where some of spin, Love number and quality factor are given but not all.
+/// without units, for an orbit or a spin faster than light, and where some of spin, Love number and quality factor are given but not all.
 TidesResult tides(const TidesRequest& request, Monitor& monitor);
 
 } // namespace cowgpu

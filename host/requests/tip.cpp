@@ -7,6 +7,7 @@
 #include "host/io/result_json.hpp"
 #include "host/io/surface_file.hpp"
 #include "host/requests/expand_surfaces.hpp"
+#include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 #include "host/requests/surface_source.hpp"
 #include "host/spectrum/convert.hpp"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace cowgpu {
@@ -314,6 +316,17 @@ PushOutcome push_outcome(const PushRequest& asked, const Rocker& rocker, const M
   return outcome;
 }
 
+void check_push(const PushRequest& push) {
+  require_range("the newtons of the lasting force are", push.sustained, least_force, largest_force);
+  require_range("the newtons of the punch are", push.punch, least_force, largest_force);
+  if (push.punch_duration)
+    require_range("the seconds of the punch are", *push.punch_duration, shortest_push, longest_push);
+  if (!push.profile) return;
+  for (const double force : push.profile->force)
+    require_range("the newtons of the push are", force, 0.0, largest_force);
+  for (const double time : push.profile->time) require_range("the seconds of the push are", time, 0.0, longest_push);
+}
+
 } // namespace
 
 bool rebuilds_surfaces(const TipRequest& request) {
@@ -321,10 +334,12 @@ bool rebuilds_surfaces(const TipRequest& request) {
 }
 
 TipResult tip(const TipRequest& request, Backend& backend, Monitor& monitor) {
-  if (request.resolution < 0 || (request.friction && !(*request.friction >= 0 && std::isfinite(*request.friction))))
-    throw Error(Fault::bad_argument,
-                fmt::format("a resolution of {} and a friction coefficient of {}: neither is below 0, both are finite",
-                            request.resolution, request.friction.value_or(0)));
+  check_push(request.push);
+  require_range("the resolution is", request.resolution, 0, largest_grid_degree);
+  require_range("the degree of the expansion is", std::max(request.lmax, 0), 0, largest_surface_degree);
+  require_range("the coefficient of friction is", request.friction.value_or(0), 0.0, std::numeric_limits<double>::max());
+  require_member("the fields are", request.fields, SurfaceFields::f);
+  if (request.side) require_member("the side is", *request.side, Side::right);
   check_gravity(request.gravity);
   Standing standing = is_coefficient_file(request.body.mesh) ? from_coefficients(request, backend, monitor)
                                                              : from_mesh(request, backend, monitor);

@@ -1,5 +1,6 @@
 #include "host/requests/transform.hpp"
 
+#include "host/bounds.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/report/json_parts.hpp"
@@ -57,6 +58,8 @@ TransformPlan plan_transform(const AnalyseRequest& request, const Backend& backe
                 fmt::format("{}: {} fields on {} rings of {} points have not {} values: a grid is "
                             "asked for with its values, field by field",
                             request.name, in.fields(), in.grid.rings, in.grid.ring_length, in.values.size()));
+  require_member("the normalisation is", request.convention.normalisation, Normalisation::unnormalised);
+  require_member("the phase is", request.convention.phase, Phase::none);
   TransformPlan plan{"analysis",      in.grid,  request.lmax < 0 ? in.lmax : request.lmax,
                      in.names,        in.notes, request.convention,
                      backend.facts(), {}};

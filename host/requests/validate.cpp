@@ -5,6 +5,7 @@
 #include "host/moment_terms.hpp"
 #include "host/plan/moments.hpp"
 #include "host/reference/moments.hpp"
+#include "host/requests/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,8 @@ Check same_bits(const std::string& what, const Multipoles& a, const Multipoles& 
 
 Validation validate_moments(const Body& body, int lmax, double cut_off, Backend* gpu, unsigned threads,
                             Monitor& monitor) {
+  require_range("the degree is", lmax, 0, largest_degree);
+  require_range("the cut-off is", cut_off, 0.0, largest_cut_off);
   const MomentProblem problem = mass_problems(body, lmax, cut_off).front(); // bodies here have no parts
   const std::optional<MomentProblem> near = near_problem(problem);
   const MomentProblem& computed = near ? *near : problem;

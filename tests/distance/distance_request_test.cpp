@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/refusals.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -28,4 +29,26 @@ TEST_CASE("distances are found by a call, of points and of a lattice", "[distanc
   CHECK_THROWS_AS(DistancePlan(request, silent_monitor()), Error);
   request.with_sign = false;
   CHECK(DistancePlan(request, silent_monitor()).count == 27);
+}
+
+TEST_CASE("lattices beyond the bounds of the command line are refused by the call", "[distance][requests]") {
+  for (const std::size_t side : {std::size_t(1), std::size_t(4097), std::size_t(4'000'000'000)}) {
+    DistanceRequest request;
+    request.mesh = box({1, 1, 1});
+    request.lattice = side;
+    refuses([&] { DistancePlan(request, silent_monitor()); }, "2 to 4096 are possible");
+  }
+}
+
+TEST_CASE("a mesh from arrays is the mesh in messages", "[distance][requests]") {
+  DistanceRequest request;
+  request.mesh = box({1, 1, 1});
+  request.mesh.name.clear();
+  request.mesh.faces.pop_back();
+  try {
+    DistancePlan(request, silent_monitor());
+    FAIL("an open mesh was taken");
+  } catch (const Error& error) {
+    CHECK_THAT(error.what(), Catch::StartsWith("the mesh: "));
+  }
 }

@@ -136,6 +136,16 @@ TEST_CASE("a convex body is star-shaped as it is, and levels of it are written",
   CHECK(std::filesystem::exists(folder / "all" + "/inflated-0.5.ply"));
 }
 
+TEST_CASE("a level that is named twice is one level and one file, and said to be", "[flow-cli]") {
+  const TemporaryFolder folder;
+  for (const std::string twice : {"0.5,0.5", "0.5,0.50"}) {
+    INFO(twice);
+    const json found = json_of({"inflate", "builtin:box:1,2,3", "--levels", twice, "--cells", "8", "-o", folder / "x.ply"});
+    CHECK(found["levels"].size() == 1);
+    CHECK_THAT(found["notes"].dump(), Contains("is 0.5 again, and one level"));
+  }
+}
+
 TEST_CASE("inflate says how well volumes are known, and what to do where they are not", "[flow-cli]") {
   const ProgramRun coarse = run_on_cpu({"inflate", "builtin:box:1,2,3", "--levels", "0.01", "--cells", "4"});
   INFO(coarse.out);

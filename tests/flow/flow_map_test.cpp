@@ -256,7 +256,7 @@ TEST_CASE("signed sheets of the benchmark at 0.2 tend to a monopole of 1.092", "
 }
 
 TEST_CASE("signed sheets of the benchmark at 0.2 are known to 1e-3 up to degree 8 from four refinements",
-          "[flow_map][benchmark][long]") {
+          "[flow_map][benchmark][deep]") {
   const auto cow = benchmark_cow();
   if (!cow) return skip_without_cow();
   const auto backend = make_cpu_backend();

@@ -4,9 +4,11 @@
 
 #include "host/error.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/refusals.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <numbers>
 
 using namespace cowgpu;
@@ -62,4 +64,30 @@ TEST_CASE("streamlines are found by a call", "[streamlines][requests]") {
   request.plane.offset = 0;
   request.space = 1e-9;
   CHECK_THROWS_AS(find_streamlines(request, *backend, silent_monitor()), Error);
+}
+
+TEST_CASE("levels and streamlines beyond the bounds of the command line are refused by the calls", "[requests]") {
+  const auto backend = make_cpu_backend();
+  for (const int cells : {3, 1025}) {
+    InflateRequest request;
+    request.mesh = box({1, 2, 3});
+    request.levels = {0.5};
+    request.cells = cells;
+    refuses([&] { inflate(request, *backend, silent_monitor()); }, "4 to 1024 are possible");
+  }
+  const auto with = [&](auto&& set) {
+    return [&, set] {
+      StreamlinesRequest request;
+      request.mesh = box({2, 2, 2}, {-1, -1, -1});
+      request.plane = parse_plane("xy");
+      set(request);
+      find_streamlines(std::move(request), *backend, silent_monitor());
+    };
+  };
+  refuses(with([](StreamlinesRequest& r) { r.count = 0; }), "the lines are 0: 1 to 1000000");
+  refuses(with([](StreamlinesRequest& r) { r.count = 2'000'000; }), "the lines are 2000000");
+  refuses(with([](StreamlinesRequest& r) { r.time = -1; }), "the time is -1");
+  refuses(with([](StreamlinesRequest& r) { r.space = 0; }), "the spacing is 0");
+  refuses(with([](StreamlinesRequest& r) { r.within = std::nan(""); }), "the distance of vertices from the plane is nan");
+  refuses(with([](StreamlinesRequest& r) { r.tolerance = 1; }), "the tolerance is 1: 1e-12 to 0.01");
 }

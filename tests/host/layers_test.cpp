@@ -45,9 +45,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
      {"host/backend", "host", "host/mass", "host/mesh", "host/map", "host/io", "host/spectrum", "host/flow",
       "host/physics", "host/plan", "host/reference", "host/report", "host/figures", "host/reproduce", "host/paper"}},
     {"host/reproduce", {"host", "host/io", "host/report", "host/paper"}},
-    {"host/cli",
-     {"host/backend", "host", "host/mesh", "host/io", "host/spectrum", "host/physics", "host/report", "host/plot",
-      "host/requests"}},
+    {"host/cli", {"host/backend", "host", "host/io", "host/report", "host/requests"}},
     // What is installed as <cowgpu/...>.
     {"host/include/cowgpu", {"cowgpu", "host/backend", "host", "host/mass", "host/mesh", "host/requests"}},
 };
@@ -56,7 +54,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
 // and those that are not in the list, which include none.
 const std::vector<std::pair<std::string, std::set<std::string>>> nouns = {
     {"monitor", {"error"}},
-    {"parallel", {"signals"}},
+    {"bounds", {"error"}},
+    {"parallel", {"bounds", "signals"}},
     {"thread_pool", {"parallel", "signals"}},
     {"units", {"error", "number"}},
     {"run_report", {"kernel_time"}},

@@ -139,3 +139,19 @@ TEST_CASE("reproduce: folders and meshes that cannot be used are named, with an 
   refused({"-o", folder / "c", "--mesh", std::string(300, 'y')}, 5, "yyy");
   refused({"-o", folder / "d", "--mesh", folder.path()}, 5, folder.path().c_str());
 }
+
+TEST_CASE("where a mesh is wanted, our own documents are called by what they are", "[mesh-source]") {
+  const TemporaryFolder folder;
+  const std::string result = folder / "m.json", table = folder / "m.gfc", tensors = folder / "t.json";
+  REQUIRE(run_program({"expand", "builtin:box", "--lmax", "2", "-o", result, "-q"}).exit_code == 0);
+  REQUIRE(run_program({"convert", result, table, "-q"}).exit_code == 0);
+  std::ofstream(tensors) << run_program({"tensors", "builtin:box", "--json"}).out;
+  const auto says = [](const std::string& file) {
+    const ProgramRun run = run_program({"expand", file});
+    CHECK(run.exit_code == 3);
+    return run.err;
+  };
+  CHECK_THAT(says(result), Contains("holds coefficients (cowgpu.result.v1), and no mesh") && Contains("`reconstruct`"));
+  CHECK_THAT(says(table), Contains("holds coefficients, and no mesh") && Contains("`potential`"));
+  CHECK_THAT(says(tensors), Contains("a document of cowgpu (cowgpu.tensors.v1), and no mesh"));
+}

@@ -203,3 +203,13 @@ TEST_CASE("PLY files with bytes changed are read or refused by name", "[ply-read
   check_mutations(ply_bytes(body, false, true), 3000, read);
   check_prefixes(ply_bytes(body, false, true), read);
 }
+
+TEST_CASE("what is wrong with a PLY file from its first byte on is in line 1", "[ply]") {
+  for (const std::string bytes : {"", "pl", "OFF\n"})
+    try {
+      parse_ply(bytes, "x.ply");
+      FAIL("taken");
+    } catch (const Error& error) {
+      CHECK_THAT(error.what(), Catch::StartsWith("x.ply:1: "));
+    }
+}

@@ -1,6 +1,7 @@
 // Layouts, batches and threads of the stage `moments`: all of them right, and none of them felt in the bits where none
 // should be.
 #include "host/error.hpp"
+#include "host/gpu/backend.hpp"
 #include "host/reference/moments.hpp"
 #include "tests/support/compare_moments.hpp"
 #include "tests/support/meshes.hpp"
@@ -155,17 +156,33 @@ TEST_CASE("slices end where groups are cut off, too", "[moments][shapes]") {
     }
 }
 
-TEST_CASE("layouts that no kernel has are refused", "[moments][shapes][errors]") {
-  const MomentProblem problem = body_problem(5);
-  for (const GpuOptions& wrong :
-       {shape(1, 4, false), shape(3, 4, false), shape(32, 4, false), shape(4, 3, false), shape(4, 128, false)}) {
-    const auto gpu = gpu_backend(wrong);
-    if (!gpu) return skip_without_gpu();
+TEST_CASE("layouts that no kernel has are refused in words, with or without a device", "[moments][shapes][errors]") {
+  const auto with = [](auto&& set) {
+    GpuOptions options;
+    set(options);
+    return options;
+  };
+  for (const auto& [wrong, word] : {
+           std::pair(shape(1, 4, false), "levels is 1"), std::pair(shape(3, 4, false), "levels is 3"),
+           std::pair(shape(32, 4, false), "levels is 32"), std::pair(shape(4, 3, false), "workgroups is 3"),
+           std::pair(shape(4, 128, false), "workgroups is 128"),
+           std::pair(shape(4, 4000000000U, false), "workgroups is 4000000000"),
+           std::pair(with([](GpuOptions& o) { o.transform_steps = 12; }), "transform_steps is 12"),
+           std::pair(with([](GpuOptions& o) { o.transform_steps = 72; }), "transform_steps is 72"),
+           std::pair(with([](GpuOptions& o) { o.transform_rings = 16; }), "transform_rings is 16"),
+           std::pair(with([](GpuOptions& o) { o.transform_pairs = 6; }), "transform_pairs is 6"),
+           std::pair(with([](GpuOptions& o) { o.transform_pairs = 4000000000U; }), "transform_pairs is 4000000000"),
+           std::pair(with([](GpuOptions& o) { o.iteration_budget = 0; }), "iteration_budget"),
+           std::pair(with([](GpuOptions& o) { o.state_budget = 0; }), "state_budget"),
+       }) {
+    INFO(word);
     try {
-      moments(*gpu, problem);
+      make_gpu_backend(wrong);
       FAIL("nothing was thrown");
     } catch (const Error& error) {
-      CHECK(error.fault() == Fault::too_large);
+      CHECK(error.fault() == Fault::bad_argument);
+      CHECK_THAT(error.what(), Catch::Contains(word));
     }
   }
+  CHECK_NOTHROW(gpu::check(with([](GpuOptions& o) { o.levels = 16, o.workgroups = 1, o.transform_pairs = 8192; })));
 }

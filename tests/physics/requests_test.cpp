@@ -8,6 +8,8 @@
 #include "host/requests/tides.hpp"
 #include "host/requests/tip.hpp"
 
+#include "tests/support/refusals.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -241,4 +243,52 @@ TEST_CASE("requests of nonsense are refused in words, whoever makes them", "[req
   TipRequest pushed{box()};
   pushed.friction = nan;
   refused([&] { tip(pushed, *make_cpu_backend(), monitor); }, "friction");
+}
+
+TEST_CASE("numbers beyond the bounds of the command line are refused by the calls too", "[requests]") {
+  using test::refuses;
+  Monitor monitor;
+  const auto cpu = make_cpu_backend(1);
+  PotentialRequest field{box()};
+  field.places = PointsRequest{{Vec3(100, 0, 0)}, "far away"};
+  field.lmax = largest_potential_degree + 1;
+  refuses([&] { potential(field, *cpu, 1, monitor); }, "the degree of the series is 1537");
+  field.lmax = 2;
+  field.derivatives = Derivatives(17);
+  refuses([&] { potential(field, *cpu, 1, monitor); }, "number 17 of its kind: there are 0 to 2");
+  refuses([&] { count_places(PlaneRequest{2, {}, {{1}, true}, 8193}); }, "8193");
+  CHECK(count_places(PlaneRequest{2, {}, {{1}, true}, 8192}) == std::size_t(8192) * 8192);
+  TipRequest pushed{box()};
+  pushed.side = physics::Side(17);
+  refuses([&] { tip(pushed, *cpu, monitor); }, "the side is number 17");
+  pushed.side.reset();
+  pushed.push.punch = 1e31;
+  refuses([&] { tip(pushed, *cpu, monitor); }, "the newtons of the punch are 1e+31: 1e-30 to 1e+30 are possible");
+  pushed.push.punch = 5000;
+  pushed.resolution = 9000;
+  refuses([&] { tip(pushed, *cpu, monitor); }, "the resolution is 9000: 0 to 8192");
+  DropRequest fall{box()};
+  fall.height = 10;
+  fall.attitude = Held(-1);
+  refuses([&] { drop(fall, monitor); }, "the attitude is number -1");
+  RadiateRequest still{box()};
+  still.omega = 0;
+  refuses([&] { radiate(still, monitor); }, "the rad/s of the turn are 0");
+  refuses([] { make_cpu_backend(4'000'000'000U); }, "the threads of the CPU path are 4000000000: 0 to 4096");
+}
+
+TEST_CASE("nothing on an orbit is faster than light", "[requests][tides]") {
+  using test::refuses;
+  Monitor monitor;
+  TidesRequest orbit{box()};
+  orbit.radius = 6771e3;
+  orbit.centre = {"", 1e300 * 6.6743e-11, 0};
+  refuses([&] { tides(orbit, monitor); }, "faster than light: lower --mass or take a wider --orbit");
+  orbit.centre.gm = 1e22; // 0.13 of the speed of light
+  CHECK_THAT(tides(orbit, monitor).subject.notes.back(), Contains("0.13 of the speed of light"));
+  orbit.centre = physics::earth;
+  orbit.spin = 1e12;
+  refuses([&] { tides(orbit, monitor); }, "faster than light: lower --spin");
+  orbit.spin = 1;
+  CHECK(tides(orbit, monitor).subject.notes.empty());
 }

@@ -11,6 +11,7 @@
 #include "host/paper/printed.hpp"
 #include "host/report/expansion_file.hpp"
 #include "host/requests/expand.hpp"
+#include "tests/support/refusals.hpp"
 #include "tests/support/run_program.hpp"
 
 #include <catch2/catch.hpp>
@@ -140,4 +141,36 @@ TEST_CASE("each printed number has a name of its own, and those about errata nam
     CHECK(&paper::printed(p.table, p.item) == &p);
     CHECK((p.erratum >= 0 && p.erratum <= 18));
   }
+}
+
+TEST_CASE("figures and timings beyond the bounds of the command line are refused by the calls", "[requests]") {
+  const auto backend = make_cpu_backend(1);
+  const auto figure = [&](auto&& set) {
+    return [&, set] {
+      FigureRequest request;
+      request.mesh = load_mesh("builtin:tetrahedron");
+      request.expansions.maps = {MapMethod::stretch};
+      request.expansions.lmax = 8;
+      set(request);
+      make_figure(std::move(request), *backend, silent_monitor());
+    };
+  };
+  refuses(figure([](FigureRequest& r) { r.kind = FigureKind(17); }), "the figure is number 17 of its kind: there are 0 to 6");
+  refuses(figure([](FigureRequest& r) { r.format = plot::PictureFormat(17); }), "the format is number 17");
+  refuses(figure([](FigureRequest& r) { r.expansions.lmax = 7; }), "the degree is 7: 8 to 4096");
+  refuses(figure([](FigureRequest& r) { r.streamlines = 0; }), "the streamlines are 0: 1 to 100000");
+  const auto timing = [](auto&& set) {
+    return [set] {
+      BenchRequest request;
+      request.mesh = load_mesh("builtin:tetrahedron");
+      set(request);
+      bench_moments(std::move(request), nullptr, silent_monitor());
+    };
+  };
+  refuses(timing([](BenchRequest& r) { r.lmax = {4, 4097}; }), "the degree is 4097");
+  refuses(timing([](BenchRequest& r) { r.cut_off = -1; }), "the cut-off is -1");
+  refuses(timing([](BenchRequest& r) { r.runs = 0; }), "the timed runs are 0");
+  RenderRequest render;
+  render.fields = SurfaceFields(17);
+  refuses([&] { check_render(render); }, "the fields are number 17");
 }

@@ -9,6 +9,7 @@
 #include "host/requests/roundtrip.hpp"
 #include "host/requests/spectrum.hpp"
 #include "host/requests/transform.hpp"
+#include "tests/support/refusals.hpp"
 #include "tests/support/run_program.hpp"
 
 #include <catch2/catch.hpp>
@@ -137,4 +138,85 @@ TEST_CASE("calls synthesise and analyse fields", "[requests][transform]") {
   CHECK_THROWS_AS(analyse(back, *backend, silent), Error);
   const RoundtripResult trip = roundtrip({16, 2, GridKind::gauss_legendre, 1, 1}, *backend, silent);
   CHECK(trip.passed());
+}
+
+TEST_CASE("expansions, transforms and conversions beyond the bounds of the command line are refused", "[requests]") {
+  const auto expansion = [](auto&& set) {
+    return [set] {
+      ExpandRequest request;
+      request.expansions.mass = true;
+      request.expansions.maps = {MapMethod::flow};
+      set(request);
+      expand(request, make_body(ClosedSurface::from(load_mesh("builtin:tetrahedron")), {}, 1), *make_cpu_backend(1),
+             silent);
+    };
+  };
+  refuses(expansion([](ExpandRequest& r) { r.cut_off = 0.01; }), "the cut-off is 0.01: 0 to 0.001");
+  refuses(expansion([](ExpandRequest& r) { r.expansions.lmax = 4097; }), "the degree is 4097: 0 to 4096");
+  refuses(expansion([](ExpandRequest& r) { r.verify = Verify(17); }), "the check of the moments is number 17");
+  refuses(expansion([](ExpandRequest& r) { r.expansions.flow.grid_degree = 63; }), "is 63: 64 to 8192");
+  refuses(expansion([](ExpandRequest& r) { r.expansions.flow.refinements = 6; }), "are 6: 1 to 5");
+  refuses(expansion([](ExpandRequest& r) { r.expansions.flow.meaning = FlowMeaning(17); }), "the meaning of the flow");
+  const auto trip = [](auto&& set) {
+    return [set] {
+      RoundtripRequest request;
+      request.lmax = 4;
+      set(request);
+      roundtrip(request, *make_cpu_backend(1), silent);
+    };
+  };
+  refuses(trip([](RoundtripRequest& r) { r.fields = 65; }), "the fields are 65: 1 to 64");
+  refuses(trip([](RoundtripRequest& r) { r.runs = 0; }), "the timed runs are 0: 1 to 1000");
+  refuses(trip([](RoundtripRequest& r) { r.grid = GridKind(17); }), "the grid is of no known kind");
+  const auto rebuilt = [](auto&& set) {
+    return [set] {
+      ReconstructRequest request;
+      request.source.input = "builtin:tetrahedron";
+      set(request);
+      check_reconstruct(request);
+    };
+  };
+  refuses(rebuilt([](ReconstructRequest& r) { r.fields = SurfaceFields(17); }), "the fields are number 17");
+  refuses(rebuilt([](ReconstructRequest& r) { r.samples = 0; }), "the samples are 0: 1 to 100000000");
+  refuses(rebuilt([](ReconstructRequest& r) { r.resolution = 8193; }), "the resolution is 8193");
+  refuses(rebuilt([](ReconstructRequest& r) { r.source.lmax = 4097; }), "the degree is 4097");
+  const auto conversion = [](auto&& set) {
+    return [set] {
+      ConvertRequest request;
+      request.input = "nothing.json";
+      set(request);
+      convert(request, silent);
+    };
+  };
+  refuses(conversion([](ConvertRequest& r) { r.target.normalisation = Normalisation(17); }), "the normalisation is number");
+  refuses(conversion([](ConvertRequest& r) { r.input_phase = Phase(-2); }), "the phase is number -2");
+  refuses(conversion([](ConvertRequest& r) { r.format = CoefficientFormat(17); }), "the format is number 17");
+  DiffRequest difference;
+  difference.tolerance = -1;
+  refuses([&] { diff(difference); }, "the tolerance is -1");
+}
+
+TEST_CASE("a radius beside a stated unit of length says its own unit", "[requests][convert]") {
+  const TemporaryFolder folder;
+  ExpansionChoice mass;
+  mass.mass = true;
+  mass.lmax = 2;
+  const std::string result = written(expand_ellipsoid(mass), folder / "body.json"), table = folder / "body.sh";
+  run_program({"convert", result, table, "-q"});
+  ConvertRequest request;
+  request.input = table;
+  request.metres = 1000;
+  request.brillouin_radius = Measure{1748, false, {}};
+  refuses([&] { convert(request, silent); }, "--brillouin-radius 1748: with --length-unit it needs a unit of its own");
+  request.brillouin_radius = Measure{1748e3, true, "km"};
+  CHECK(*convert(request, silent).output.brillouin_radius == 1748e3);
+  request.reference_radius = Measure{2, false, {}};
+  refuses([&] { convert(request, silent); }, "--reference-radius 2: with --length-unit");
+  request.reference_radius = Measure{2000, true, "km"};
+  CHECK(*convert(request, silent).output.reference_radius == 2000);
+  request.metres.reset();
+  refuses([&] { convert(request, silent); }, "add --length-unit, or give a bare number in the file's unit");
+  request.brillouin_radius = Measure{3, false, {}};
+  request.reference_radius = Measure{2, false, {}};
+  CHECK(*convert(request, silent).output.reference_radius == 2);
 }

@@ -4,7 +4,7 @@
 //                     record of each to the ctest that called
 //   NAME --case       one case: its record where this ctest has one, else it is run. Exit code 0 passed, 1 failed, 77 skipped
 // A case is skipped where it prints SKIPPED and nothing in it fails. Tags: [long] takes more than about two seconds of processor
-// time, [alone] needs a process of its own.
+// time, [deep] more than about a minute, [alone] needs a process of its own.
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 
@@ -116,7 +116,7 @@ bool has_tag(const Catch::TestCase& test, std::string_view tag) {
 }
 
 bool is_quick(const Catch::TestCase& test) {
-  return !test.isHidden() && !has_tag(test, "long") && !has_tag(test, "alone");
+  return !test.isHidden() && !has_tag(test, "long") && !has_tag(test, "deep") && !has_tag(test, "alone");
 }
 
 const std::vector<Catch::TestCase>& all_cases(Catch::Session& session) {
@@ -207,13 +207,13 @@ int list(Catch::Session& session, bool all_alone) {
   bool any = false;
   for (const Catch::TestCase& test : all_cases(session)) {
     if (test.isHidden()) continue;
-    const bool is_long = has_tag(test, "long"), alone = all_alone || has_tag(test, "alone");
+    const bool is_deep = has_tag(test, "deep"), is_long = is_deep || has_tag(test, "long"), alone = all_alone || has_tag(test, "alone");
     any = any || (!is_long && !alone);
     script += fmt::format("add_test([==[{0}]==] [==[{1}]==] [==[{2}]==] --case)\n"
                           "set_tests_properties([==[{0}]==] PROPERTIES SKIP_RETURN_CODE {3} TIMEOUT 900",
                           test.name, program, escaped(test.name), skipped_code);
     if (is_long)
-      script += " LABELS long COST 1)\n";
+      script += fmt::format(" LABELS {} COST 1)\n", is_deep ? "deep" : "long");
     else
       script += alone ? " COST 50)\n" : fmt::format(" COST 90 DEPENDS [==[{}]==])\n", together);
   }

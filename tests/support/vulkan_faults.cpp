@@ -2,9 +2,14 @@
 
 #include <volk.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <tuple>
 
 namespace cowgpu::test {
 namespace {
@@ -18,6 +23,26 @@ constexpr std::array<VkResult, vulkan_calls> results = {
 std::array<std::atomic<int>, vulkan_calls> seen_calls, fails_at, fails_until;
 std::atomic<int> memory = 0, buffers = 0, destroyed = 0;
 std::atomic<bool> failed = false;
+
+// Bytes of each allocation that lives.
+std::mutex sizes_mutex;
+std::map<VkDeviceMemory, std::uint64_t> sizes;
+std::uint64_t live_bytes = 0, most_live_bytes = 0;
+
+void count_allocation(const VkMemoryAllocateInfo* info, VkDeviceMemory handle) {
+  const std::lock_guard lock(sizes_mutex);
+  sizes[handle] = info->allocationSize;
+  live_bytes += info->allocationSize;
+  most_live_bytes = std::max(most_live_bytes, live_bytes);
+}
+
+void count_free(VkDeviceMemory handle) {
+  const std::lock_guard lock(sizes_mutex);
+  const auto found = sizes.find(handle);
+  if (found == sizes.end()) return;
+  live_bytes -= found->second;
+  sizes.erase(found);
+}
 
 bool fails(VulkanCall call) {
   const auto c = std::size_t(call);
@@ -35,7 +60,12 @@ struct Hook {
   static VKAPI_ATTR VkResult VKAPI_CALL stand_in(Arguments... arguments) {
     if (fails(call)) return results[std::size_t(call)];
     const VkResult result = real(arguments...);
-    if (result == VK_SUCCESS && call == VulkanCall::allocate) ++memory;
+    if constexpr (call == VulkanCall::allocate)
+      if (result == VK_SUCCESS) {
+        ++memory;
+        const std::tuple<Arguments...> all(arguments...);
+        count_allocation(std::get<1>(all), *std::get<3>(all));
+      }
     if (result == VK_SUCCESS && call == VulkanCall::buffer) ++buffers;
     return result;
   }
@@ -72,6 +102,7 @@ VKAPI_ATTR VkResult VKAPI_CALL wait_stand_in(VkDevice device, std::uint32_t coun
 VKAPI_ATTR void VKAPI_CALL free_stand_in(VkDevice device, VkDeviceMemory handle,
                                          const VkAllocationCallbacks* callbacks) {
   if (handle) --memory;
+  count_free(handle);
   destroyed += handle && failed;
   real_free(device, handle, callbacks);
 }
@@ -168,6 +199,10 @@ void VulkanFaults::arm(VulkanCall call, int n, int times) {
 }
 
 void VulkanFaults::disarm() {
+  {
+    const std::lock_guard lock(sizes_mutex);
+    most_live_bytes = live_bytes;
+  }
   for (auto* list : {&seen_calls, &fails_at, &fails_until})
     for (auto& number : *list) number = 0;
 }
@@ -182,6 +217,11 @@ int VulkanFaults::seen(VulkanCall call) const {
 
 int VulkanFaults::live_memory() const {
   return memory;
+}
+
+std::uint64_t VulkanFaults::most_bytes() const {
+  const std::lock_guard lock(sizes_mutex);
+  return most_live_bytes;
 }
 
 int VulkanFaults::live_buffers() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,8 @@ public:
   /// Allocations and buffers that were made and not freed while this lived.
   int live_memory() const;
   int live_buffers() const;
+  /// The most bytes that were allocated at one time since it was made or disarmed.
+  std::uint64_t most_bytes() const;
   /// Allocations, buffers, fences, pipelines and devices destroyed since the call that was armed last failed.
   int destroyed_since() const;
 };
