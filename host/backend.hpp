@@ -77,10 +77,10 @@ struct GpuOptions {
   std::uint64_t state_budget = std::uint64_t(512) << 20; ///< bytes of recursion rows kept on the device at once
   std::uint32_t iteration_budget = 60000;                ///< loop iterations one invocation may run in a dispatch
   // The same for transforms (shaders/legendre.h, shaders/ring_fourier.h).
-  std::uint32_t transform_steps = 0;        ///< steps k unrolled; 8, 16, ... 64
-  std::uint32_t transform_rings = 0;        ///< pairs of rings worked on together; 1, 2, 4 or 8
-  std::uint32_t transform_pairs = 0;        ///< pairs of rings a workgroup works on; a multiple of the last, at most 8192
-  std::uint64_t transform_binding = 0;      ///< bytes a binding spans at most
+  std::uint32_t transform_steps = 0;   ///< steps k unrolled; 8, 16, ... 64
+  std::uint32_t transform_rings = 0;   ///< pairs of rings worked on together; 1, 2, 4 or 8
+  std::uint32_t transform_pairs = 0;   ///< pairs of rings a workgroup works on; a multiple of the last, at most 8192
+  std::uint64_t transform_binding = 0; ///< bytes a binding spans at most
   std::uint32_t private_ring_points = 4096; ///< longest ring transformed without buffers between the passes
 };
 

@@ -64,8 +64,12 @@ ConvertRequest request_of(const Options& options, CoefficientFormat format) {
   request.si = options.si;
   if (!options.rotation.empty()) request.rotation = angles_of(options);
   request.rotation_text = options.rotation + " " + options.angle_unit;
-  request.target = {kind_named(options.kind),   form_named(options.form), normalisation_named(options.normalisation),
-                    phase_named(options.phase), {},                        options.lmax};
+  request.target = {kind_named(options.kind),
+                    form_named(options.form),
+                    normalisation_named(options.normalisation),
+                    phase_named(options.phase),
+                    {},
+                    options.lmax};
   request.format = format;
   return request;
 }
@@ -115,13 +119,15 @@ void add_convert(Command& app, Common& common) {
                    ".gfc and .sh hold)")
       ->check(one_of({"multipoles", "potential"}));
   command
-      ->add_option("--reference-radius", options->reference_radius, "Reference radius of OUT, in the length unit of IN or with its own, such as 1738km")
+      ->add_option("--reference-radius", options->reference_radius,
+                   "Reference radius of OUT, in the length unit of IN or with its own, such as 1738km")
       ->type_name("R")
       ->check(not_empty());
   command
-      ->add_option("--brillouin-radius", options->brillouin_radius,
-                   "Radius of the sphere about the origin of IN that holds the body, where IN does not say it; in the length "
-                   "unit of IN, or with its own, such as 1738km, as it must be with --length-unit")
+      ->add_option(
+          "--brillouin-radius", options->brillouin_radius,
+          "Radius of the sphere about the origin of IN that holds the body, where IN does not say it; in the length "
+          "unit of IN, or with its own, such as 1738km, as it must be with --length-unit")
       ->type_name("R")
       ->check(not_empty());
   command

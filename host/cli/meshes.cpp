@@ -1,7 +1,7 @@
+#include "host/requests/meshes.hpp"
 #include "host/cli/commands.hpp"
 #include "host/error.hpp"
 #include "host/report/json_parts.hpp"
-#include "host/requests/meshes.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

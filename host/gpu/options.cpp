@@ -30,8 +30,7 @@ void check(const GpuOptions& o) {
   require(o.levels == 0 || power_of_two(o.levels, 2, 16), "levels", o.levels, "2, 4, 8 or 16");
   require(o.workgroups == 0 || power_of_two(o.workgroups, 1, 64), "workgroups", o.workgroups,
           "a power of two up to 64");
-  require(o.transform_steps % 8 == 0 && o.transform_steps <= 64, "transform_steps", o.transform_steps,
-          "8, 16, ... 64");
+  require(o.transform_steps % 8 == 0 && o.transform_steps <= 64, "transform_steps", o.transform_steps, "8, 16, ... 64");
   require(o.transform_rings == 0 || power_of_two(o.transform_rings, 1, 8), "transform_rings", o.transform_rings,
           "1, 2, 4 or 8");
   // Four is what no device's own choice of rings goes beyond.

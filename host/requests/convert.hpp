@@ -19,14 +19,14 @@ struct ConvertRequest {
   std::optional<Normalisation> input_normalisation = {};
   std::optional<Phase> input_phase = {};
   std::optional<Measure> brillouin_radius = {}; ///< with its unit, or in the file's where `metres` does not state that
-  std::optional<double> metres = {};           ///< length of the file's unit
-  bool si = false;                             ///< lengths of the file are metres, and its density is in kg/m^3
+  std::optional<double> metres = {};            ///< length of the file's unit
+  bool si = false;                              ///< lengths of the file are metres, and its density is in kg/m^3
   /// The body is turned about its origin, or the fields are, after degrees are left out and before the rest.
   std::optional<EulerAngles> rotation = {};
   std::string rotation_text; ///< the angles as a remark in the file names them: "20,30,40 degrees"
   /// What is asked for; where it says nothing, `format` decides what must change. Its reference radius is the next one's.
   ConversionTarget target;
-  std::optional<Measure> reference_radius = {}; ///< as brillouin_radius
+  std::optional<Measure> reference_radius = {};       ///< as brillouin_radius
   CoefficientFormat format = CoefficientFormat::json; ///< format of the file to be written
 };
 

@@ -8,8 +8,6 @@
 #include "host/report/json_parts.hpp"
 #include "host/spectrum/convert.hpp"
 
-#include <limits>
-
 namespace cowgpu {
 namespace {
 
@@ -28,7 +26,7 @@ CoefficientSet read(const DiffRequest& request, const std::filesystem::path& pat
 DiffResult diff(const DiffRequest& request) {
   require_member("the normalisation is", request.convention.normalisation, Normalisation::unnormalised);
   require_member("the phase is", request.convention.phase, Phase::none);
-  require_range("the tolerance is", request.tolerance.value_or(0), 0.0, std::numeric_limits<double>::max());
+  require_not_negative("the tolerance is", request.tolerance.value_or(0));
   bool unit_used = false;
   const CoefficientSet a = read(request, request.first, unit_used), b = read(request, request.second, unit_used);
   if (request.metres && !unit_used) throw Error(Fault::bad_argument, "--length-unit: both files are in metres already");

@@ -70,8 +70,7 @@ DropOutcome drop(const DropRequest& request, Monitor& monitor) {
         fmt::format("{} holds coefficients, which do not say where the body's lowest point is; `drop` needs the mesh",
                     request.body.mesh));
   check_direction(request.feet, "the direction of the feet");
-  if (const auto* held = std::get_if<Held>(&request.attitude))
-    require_member("the attitude is", *held, Held::on_side);
+  if (const auto* held = std::get_if<Held>(&request.attitude)) require_member("the attitude is", *held, Held::on_side);
   if (const auto* attitude = std::get_if<physics::LongMat3>(&request.attitude))
     check_rotation(attitude->cast<double>(), "the attitude");
   check_multipole_order(request.order);

@@ -22,7 +22,7 @@ std::string coarse_note(const InflatedBody& body, int cells) {
                                body.error.area_error / body.audit.area);
   if (part <= 0.01) return {};
   const double wanted = std::ceil(cells * body.report.cell / body.level);
-  const std::string cure = cells >= most_cells    ? "take a longer level"
+  const std::string cure = cells >= most_cells ? "take a longer level"
                            : wanted > cells ? fmt::format("take --cells {:.0f}", std::min(wanted, double(most_cells)))
                                             : fmt::format("take --cells {}", std::min(2 * cells, most_cells));
   return fmt::format(

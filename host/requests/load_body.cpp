@@ -68,10 +68,11 @@ void state_radius(const BodyRequest& request, CoefficientSet& set) {
                                          ": a length with a unit needs that of the file: add --length-unit, or give "
                                          "a bare number in the file's unit");
   if (!radius.has_unit && request.units_stated())
-    throw Error(Fault::bad_argument,
-                fmt::format("{0}: with --length-unit it needs a unit of its own, since {1} of the file's unit and {1} m "
-                            "differ: such as {1}km or {1}m",
-                            option, radius.value));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("{0}: with --length-unit it needs a unit of its own, since {1} of the file's unit and {1} m "
+                    "differ: such as {1}km or {1}m",
+                    option, radius.value));
   if (!(radius.value > 0)) throw Error(Fault::bad_argument, option + ": it must be above 0");
   const double value = metres ? radius.value : radius.value / request.length_unit.value_or(1);
   if (set.brillouin_radius && std::abs(value - *set.brillouin_radius) > 1e-9 * value)

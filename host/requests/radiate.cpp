@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace cowgpu {
@@ -77,9 +76,12 @@ void check_mass(const RigidBody& body, const Vec3& axis) {
 
 RadiationResult radiate(const RadiateRequest& request, Monitor& monitor) {
   check_direction(request.axis, "the axis");
-  constexpr double most = std::numeric_limits<double>::max();
-  require_range("the rad/s of the turn are", request.omega, slowest_turn, most);
-  require_range("the seconds of the turn are", request.time, 0.0, most);
+  require_positive("the rate of the turn is", request.omega, " rad/s");
+  require_not_negative("the time from the start of the turn is", request.time, " s");
+  if (request.omega < slowest_turn)
+    throw Error(Fault::bad_argument, fmt::format("{:.3g} rad/s is slower than a turn in 400 Gyr, {} rad/s, which is as "
+                                                 "slow as this goes",
+                                                 request.omega, slowest_turn));
   const LoadedMass loaded = load_mass(request.body, Motion::free, monitor);
   RadiationResult r;
   r.subject = subject(loaded);

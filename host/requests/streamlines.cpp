@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cowgpu {
 namespace {
@@ -40,11 +39,10 @@ StreamlineStarts starts_of(const StreamlinesRequest& request, const RawMesh& mes
 }
 
 void check(const StreamlinesRequest& request) {
-  constexpr double largest = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::min();
   require_range("the lines are", request.count, std::size_t(1), most_streamlines);
-  if (request.time) require_range("the time is", *request.time, least, largest);
-  if (request.space) require_range("the spacing is", *request.space, least, largest);
-  if (request.within) require_range("the distance of vertices from the plane is", *request.within, 0.0, largest);
+  if (request.time) require_positive("the time is", *request.time);
+  if (request.space) require_positive("the spacing is", *request.space);
+  if (request.within) require_not_negative("the distance of vertices from the plane is", *request.within);
   require_range("the tolerance is", request.tolerance, least_tolerance, largest_tolerance);
 }
 

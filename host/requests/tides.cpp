@@ -47,8 +47,7 @@ void add_notes(const TidesRequest& request, const LoadedMass& loaded, TidesResul
 // The mechanics here is Newton's.
 void check_speed(double speed, const std::string& what, const char* cure, std::vector<std::string>& notes) {
   if (speed >= speed_of_light_si)
-    throw Error(Fault::bad_argument,
-                fmt::format("{} moves at {:.3g} m/s, faster than light: {}", what, speed, cure));
+    throw Error(Fault::bad_argument, fmt::format("{} moves at {:.3g} m/s, faster than light: {}", what, speed, cure));
   if (speed >= 0.1 * speed_of_light_si)
     notes.push_back(fmt::format("{} moves at {:.2g} of the speed of light, and the formulas are for slow ones", what,
                                 speed / speed_of_light_si));

@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace cowgpu {
@@ -317,14 +316,14 @@ PushOutcome push_outcome(const PushRequest& asked, const Rocker& rocker, const M
 }
 
 void check_push(const PushRequest& push) {
-  require_range("the newtons of the lasting force are", push.sustained, least_force, largest_force);
-  require_range("the newtons of the punch are", push.punch, least_force, largest_force);
+  require_range("the force that lasts, in N, is", push.sustained, least_force, largest_force);
+  require_range("the force of the punch, in N, is", push.punch, least_force, largest_force);
   if (push.punch_duration)
-    require_range("the seconds of the punch are", *push.punch_duration, shortest_push, longest_push);
+    require_range("the duration of the punch, in s, is", *push.punch_duration, shortest_push, longest_push);
   if (!push.profile) return;
   for (const double force : push.profile->force)
-    require_range("the newtons of the push are", force, 0.0, largest_force);
-  for (const double time : push.profile->time) require_range("the seconds of the push are", time, 0.0, longest_push);
+    require_range("the force of the push, in N, is", force, 0.0, largest_force);
+  for (const double time : push.profile->time) require_range("the time of the push, in s, is", time, 0.0, longest_push);
 }
 
 } // namespace
@@ -337,7 +336,7 @@ TipResult tip(const TipRequest& request, Backend& backend, Monitor& monitor) {
   check_push(request.push);
   require_range("the resolution is", request.resolution, 0, largest_grid_degree);
   require_range("the degree of the expansion is", std::max(request.lmax, 0), 0, largest_surface_degree);
-  require_range("the coefficient of friction is", request.friction.value_or(0), 0.0, std::numeric_limits<double>::max());
+  require_not_negative("the coefficient of friction is", request.friction.value_or(0));
   require_member("the fields are", request.fields, SurfaceFields::f);
   if (request.side) require_member("the side is", *request.side, Side::right);
   check_gravity(request.gravity);

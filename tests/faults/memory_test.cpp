@@ -144,14 +144,13 @@ std::vector<Call> calls() {
   }
   for (const auto& [mesh, count] : {std::pair(&large, 100), std::pair(&small, 50'000)}) {
     const std::vector<Vec3> points = scattered(std::size_t(count));
-    all.push_back(
-        {named("distances, queries", *mesh, count),
-         [=, mesh = mesh](const Backend& b) {
-           return b.distance_field(mesh->vertices, mesh->faces)->memory(points.size());
-         },
-         [=, mesh = mesh](const Backend& b) {
-           b.distance_field(mesh->vertices, mesh->faces)->closest(points, {}, silent_monitor());
-         }});
+    all.push_back({named("distances, queries", *mesh, count),
+                   [=, mesh = mesh](const Backend& b) {
+                     return b.distance_field(mesh->vertices, mesh->faces)->memory(points.size());
+                   },
+                   [=, mesh = mesh](const Backend& b) {
+                     b.distance_field(mesh->vertices, mesh->faces)->closest(points, {}, silent_monitor());
+                   }});
   }
   for (const auto& [mesh, count] : {std::pair(&large, 100), std::pair(&small, 5'000)}) {
     const std::vector<Vec3> starts = scattered(std::size_t(count));
@@ -230,7 +229,8 @@ TEST_CASE("the Vulkan path allocates on the device no more than it says", "[memo
     const double taken = double(counts.most_bytes()) - kept;
     INFO("said " << need.device << " bytes and " << need.host << " on the host, took " << taken);
     CHECK(counts.live_memory() == before);
-    CHECK(taken <= double(need.device) + double(need.host)); // what goes to the device and back passes through the host's
+    CHECK(taken <=
+          double(need.device) + double(need.host)); // what goes to the device and back passes through the host's
     CHECK(double(need.device) <= 4 * taken + 65536);
   }
 }

@@ -140,7 +140,8 @@ TEST_CASE("a level that is named twice is one level and one file, and said to be
   const TemporaryFolder folder;
   for (const std::string twice : {"0.5,0.5", "0.5,0.50"}) {
     INFO(twice);
-    const json found = json_of({"inflate", "builtin:box:1,2,3", "--levels", twice, "--cells", "8", "-o", folder / "x.ply"});
+    const json found =
+        json_of({"inflate", "builtin:box:1,2,3", "--levels", twice, "--cells", "8", "-o", folder / "x.ply"});
     CHECK(found["levels"].size() == 1);
     CHECK_THAT(found["notes"].dump(), Contains("is 0.5 again, and one level"));
   }

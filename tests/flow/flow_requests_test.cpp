@@ -88,6 +88,7 @@ TEST_CASE("levels and streamlines beyond the bounds of the command line are refu
   refuses(with([](StreamlinesRequest& r) { r.count = 2'000'000; }), "the lines are 2000000");
   refuses(with([](StreamlinesRequest& r) { r.time = -1; }), "the time is -1");
   refuses(with([](StreamlinesRequest& r) { r.space = 0; }), "the spacing is 0");
-  refuses(with([](StreamlinesRequest& r) { r.within = std::nan(""); }), "the distance of vertices from the plane is nan");
+  refuses(with([](StreamlinesRequest& r) { r.within = std::nan(""); }),
+          "the distance of vertices from the plane is nan");
   refuses(with([](StreamlinesRequest& r) { r.tolerance = 1; }), "the tolerance is 1: 1e-12 to 0.01");
 }

@@ -205,8 +205,7 @@ TEST_CASE("PLY files with bytes changed are read or refused by name", "[ply-read
 }
 
 TEST_CASE("what is wrong with a PLY file from its first byte on is in line 1", "[ply]") {
-  for (const std::string bytes : {"", "pl", "OFF\n"})
-    try {
+  for (const std::string bytes : {"", "pl", "OFF\n"}) try {
       parse_ply(bytes, "x.ply");
       FAIL("taken");
     } catch (const Error& error) {

@@ -43,7 +43,8 @@ TEST_CASE("maps beyond the bounds of the command line are refused by the call", 
       make_map(std::move(request), silent_monitor());
     };
   };
-  refuses(with([](MapRequest& r) { r.relabellings = 4'000'000'000U; }), "the copies of the body are 4000000000: 0 to 10000");
+  refuses(with([](MapRequest& r) { r.relabellings = 4'000'000'000U; }),
+          "the copies of the body are 4000000000: 0 to 10000");
   refuses(with([](MapRequest& r) { r.lmax = 0; }), "is 0: 1 to 8192");
   refuses(with([](MapRequest& r) { r.method = StretchOptions{2'000'000}; }), "the sweeps are 2000000");
   refuses(with([](MapRequest& r) {

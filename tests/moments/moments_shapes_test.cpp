@@ -163,8 +163,10 @@ TEST_CASE("layouts that no kernel has are refused in words, with or without a de
     return options;
   };
   for (const auto& [wrong, word] : {
-           std::pair(shape(1, 4, false), "levels is 1"), std::pair(shape(3, 4, false), "levels is 3"),
-           std::pair(shape(32, 4, false), "levels is 32"), std::pair(shape(4, 3, false), "workgroups is 3"),
+           std::pair(shape(1, 4, false), "levels is 1"),
+           std::pair(shape(3, 4, false), "levels is 3"),
+           std::pair(shape(32, 4, false), "levels is 32"),
+           std::pair(shape(4, 3, false), "workgroups is 3"),
            std::pair(shape(4, 128, false), "workgroups is 128"),
            std::pair(shape(4, 4000000000U, false), "workgroups is 4000000000"),
            std::pair(with([](GpuOptions& o) { o.transform_steps = 12; }), "transform_steps is 12"),

@@ -263,7 +263,7 @@ TEST_CASE("numbers beyond the bounds of the command line are refused by the call
   refuses([&] { tip(pushed, *cpu, monitor); }, "the side is number 17");
   pushed.side.reset();
   pushed.push.punch = 1e31;
-  refuses([&] { tip(pushed, *cpu, monitor); }, "the newtons of the punch are 1e+31: 1e-30 to 1e+30 are possible");
+  refuses([&] { tip(pushed, *cpu, monitor); }, "the force of the punch, in N, is 1e+31: 1e-30 to 1e+30 are possible");
   pushed.push.punch = 5000;
   pushed.resolution = 9000;
   refuses([&] { tip(pushed, *cpu, monitor); }, "the resolution is 9000: 0 to 8192");
@@ -273,7 +273,9 @@ TEST_CASE("numbers beyond the bounds of the command line are refused by the call
   refuses([&] { drop(fall, monitor); }, "the attitude is number -1");
   RadiateRequest still{box()};
   still.omega = 0;
-  refuses([&] { radiate(still, monitor); }, "the rad/s of the turn are 0");
+  refuses([&] { radiate(still, monitor); }, "the rate of the turn is 0 rad/s: it must be above 0");
+  still.omega = 1e-19;
+  refuses([&] { radiate(still, monitor); }, "slower than a turn in 400 Gyr");
   refuses([] { make_cpu_backend(4'000'000'000U); }, "the threads of the CPU path are 4000000000: 0 to 4096");
 }
 

@@ -155,7 +155,8 @@ TEST_CASE("figures and timings beyond the bounds of the command line are refused
       make_figure(std::move(request), *backend, silent_monitor());
     };
   };
-  refuses(figure([](FigureRequest& r) { r.kind = FigureKind(17); }), "the figure is number 17 of its kind: there are 0 to 6");
+  refuses(figure([](FigureRequest& r) { r.kind = FigureKind(17); }),
+          "the figure is number 17 of its kind: there are 0 to 6");
   refuses(figure([](FigureRequest& r) { r.format = plot::PictureFormat(17); }), "the format is number 17");
   refuses(figure([](FigureRequest& r) { r.expansions.lmax = 7; }), "the degree is 7: 8 to 4096");
   refuses(figure([](FigureRequest& r) { r.streamlines = 0; }), "the streamlines are 0: 1 to 100000");

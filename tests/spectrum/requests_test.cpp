@@ -188,7 +188,8 @@ TEST_CASE("expansions, transforms and conversions beyond the bounds of the comma
       convert(request, silent);
     };
   };
-  refuses(conversion([](ConvertRequest& r) { r.target.normalisation = Normalisation(17); }), "the normalisation is number");
+  refuses(conversion([](ConvertRequest& r) { r.target.normalisation = Normalisation(17); }),
+          "the normalisation is number");
   refuses(conversion([](ConvertRequest& r) { r.input_phase = Phase(-2); }), "the phase is number -2");
   refuses(conversion([](ConvertRequest& r) { r.format = CoefficientFormat(17); }), "the format is number 17");
   DiffRequest difference;

@@ -207,7 +207,8 @@ int list(Catch::Session& session, bool all_alone) {
   bool any = false;
   for (const Catch::TestCase& test : all_cases(session)) {
     if (test.isHidden()) continue;
-    const bool is_deep = has_tag(test, "deep"), is_long = is_deep || has_tag(test, "long"), alone = all_alone || has_tag(test, "alone");
+    const bool is_deep = has_tag(test, "deep"), is_long = is_deep || has_tag(test, "long"),
+               alone = all_alone || has_tag(test, "alone");
     any = any || (!is_long && !alone);
     script += fmt::format("add_test([==[{0}]==] [==[{1}]==] [==[{2}]==] --case)\n"
                           "set_tests_properties([==[{0}]==] PROPERTIES SKIP_RETURN_CODE {3} TIMEOUT 900",
