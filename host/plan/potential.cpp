@@ -1,5 +1,6 @@
 #include "host/plan/potential.hpp"
 
+#include "host/bounds.hpp"
 #include "host/error.hpp"
 
 #include <fmt/format.h>
@@ -67,6 +68,7 @@ Set value_set(const PotentialProblem& problem, int top) {
 }
 
 void check(const PotentialProblem& problem) {
+  require_member("the derivatives are", problem.derivatives, Derivatives::second);
   const int most = std::min(problem.moments.lmax, largest_potential_degree);
   if (problem.lmax < 0 || problem.lmax > most)
     throw Error(Fault::bad_argument,
