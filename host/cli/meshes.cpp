@@ -1,33 +1,32 @@
 #include "host/cli/commands.hpp"
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/mesh_catalogue.hpp"
 #include "host/mesh/builtin.hpp"
-#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu::cli {
 namespace {
 
-void write_json() {
-  nlohmann::ordered_json named = nlohmann::ordered_json::array(), made = nlohmann::ordered_json::array();
+void write_document() {
+  List named, made;
   for (const CatalogueEntry& e : mesh_catalogue()) {
     const auto path = find_catalogued(e);
-    named.push_back({{"name", e.name},
-                     {"path", path ? nlohmann::ordered_json(path->string()) : nlohmann::ordered_json()},
-                     {"file", e.file},
-                     {"sha256", e.sha256},
-                     {"vertices", e.vertices},
-                     {"triangles", e.triangles},
-                     {"what", e.what},
-                     {"source", e.source},
-                     {"licence", e.licence},
-                     {"scale", e.scale},
-                     {"axes", e.axes}});
+    named.push_back(Object{{"name", e.name},
+                           {"path", path ? Value(path->string()) : Value()},
+                           {"file", e.file},
+                           {"sha256", e.sha256},
+                           {"vertices", e.vertices},
+                           {"triangles", e.triangles},
+                           {"what", e.what},
+                           {"source", e.source},
+                           {"licence", e.licence},
+                           {"scale", e.scale},
+                           {"axes", e.axes}});
   }
   for (const auto& body : builtin_bodies()) made.push_back("builtin:" + std::string(body.usage));
-  write_stdout(json_text({{"schema", "cowgpu.meshes.v1"}, {"named", named}, {"builtin", made}}) + "\n");
+  write_json({{"schema", "cowgpu.meshes.v1"}, {"named", named}, {"builtin", made}}, write_stdout);
 }
 
 void write_text() {
@@ -80,7 +79,7 @@ void add_meshes(Command& app) {
   command->callback([command, json] {
     if (command->subcommand_given()) return;
     if (*json)
-      write_json();
+      write_document();
     else
       write_text();
   });

@@ -5,6 +5,7 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/requests/reconstruct.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
@@ -81,7 +82,7 @@ void run(const Options& options, const Common& common) {
   if (!note.empty()) report.notes.push_back(note);
   report.total_seconds = seconds_since(start);
   if (options.json)
-    write_json(report, write_stdout);
+    write_json(document(report), write_stdout);
   else
     write_screen(report, write_stdout);
 }
