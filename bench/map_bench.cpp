@@ -5,6 +5,7 @@
 #include "host/backend.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/map/harmonic.hpp"
 #include "host/map/quality.hpp"
@@ -12,7 +13,7 @@
 #include "host/mesh/subdivide.hpp"
 #include "host/paper/recipe.hpp"
 #include "host/paper/surface_tables.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include "bench/command_line.hpp"
@@ -63,7 +64,7 @@ public:
     for (const Path& path : paths_) {
       const DeviceFacts& facts = path.backend->facts();
       say("{:<8} {}; {}; {}\n", path.name, facts.name, facts.driver, facts.api);
-      document_["devices"].push_back(device_json(facts));
+      document_["devices"].push_back(Json::parse(json_text(members(facts))));
     }
     document_["mesh"] = {{"name", options_.mesh}, {"split", options_.split}, {"triangles", triangles}};
     say("Times are medians of {} calls in milliseconds, with the shortest and the processor time of all threads.\n",

@@ -1,9 +1,8 @@
 #include "host/requests/bench.hpp"
 #include "host/cli/commands.hpp"
 
+#include "host/io/document_json.hpp"
 #include "host/io/mesh_source.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace cowgpu::cli {
 namespace {
@@ -25,7 +24,7 @@ void run(const Options& options, const Common& common) {
   if (!note.empty()) result.notes.push_back(note);
   monitor.clear();
   if (options.json)
-    write_stdout(bench_json(result).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    write_json(document(result), write_stdout);
   else
     write_bench(result, write_stdout);
 }

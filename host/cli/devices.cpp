@@ -1,7 +1,7 @@
 #include "host/cli/commands.hpp"
+#include "host/io/document_json.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu::cli {
 namespace {
@@ -19,26 +19,26 @@ void run(const Options& options) {
   const std::vector<DeviceFacts> gpus = list_gpus(&reason);
   const DeviceFacts cpu = make_cpu_backend()->facts();
   if (options.json) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    List list;
     for (std::size_t i = 0; i < gpus.size(); ++i) {
       const DeviceFacts& d = gpus[i];
-      list.push_back({{"index", i},
-                      {"name", d.name},
-                      {"type", d.type},
-                      {"driver", d.driver},
-                      {"api", d.api},
-                      {"usable", d.usable},
-                      {"fp64", d.fp64},
-                      {"subgroup_size", d.subgroup},
-                      {"memory", d.memory},
-                      {"largest_buffer", d.largest_buffer},
-                      {"shared_memory", d.shared_memory}});
+      list.push_back(Object{{"index", i},
+                            {"name", d.name},
+                            {"type", d.type},
+                            {"driver", d.driver},
+                            {"api", d.api},
+                            {"usable", d.usable},
+                            {"fp64", d.fp64},
+                            {"subgroup_size", d.subgroup},
+                            {"memory", d.memory},
+                            {"largest_buffer", d.largest_buffer},
+                            {"shared_memory", d.shared_memory}});
     }
-    const nlohmann::ordered_json all = {
-        {"vulkan", list},
-        {"reason", reason},
-        {"cpu", {{"name", cpu.name}, {"simd", cpu.driver}, {"threads", cpu.threads}, {"memory", cpu.memory}}}};
-    write_stdout(all.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    write_json(
+        {{"vulkan", list},
+         {"reason", reason},
+         {"cpu", Object{{"name", cpu.name}, {"simd", cpu.driver}, {"threads", cpu.threads}, {"memory", cpu.memory}}}},
+        write_stdout);
     return;
   }
   for (std::size_t i = 0; i < gpus.size(); ++i) {

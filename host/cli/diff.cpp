@@ -2,6 +2,7 @@
 
 #include "host/cli/quantities.hpp"
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/requests/diff.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ void run(const Options& options, const Common& common) {
   DiffResult result = diff(request);
   result.command = common.command;
   if (options.json)
-    write_json(result, write_stdout);
+    write_json(document(result), write_stdout);
   else
     write_screen(result, write_stdout);
   const double worst = result.difference.worst();

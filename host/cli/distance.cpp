@@ -4,11 +4,10 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/point_file.hpp"
-#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu::cli {
 namespace {
@@ -94,7 +93,7 @@ void run(const Options& options, const Common& common) {
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   }
   if (options.json)
-    write_stdout(json_text(distance_json(result, common.command)) + "\n");
+    write_json(document(result, common.command), write_stdout);
   else
     write_distance(result, write_stdout);
 }

@@ -2,11 +2,10 @@
 #include "host/cli/commands.hpp"
 
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/mesh_source.hpp"
-#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu::cli {
 namespace {
@@ -24,7 +23,7 @@ void run(bool json, const Common& common) {
   ErrataResult result = find_errata(std::move(benchmark), monitor);
   result.notes = std::move(notes);
   if (json)
-    write_stdout(json_text(errata_json(result, common.command)) + "\n");
+    write_json(document(result, common.command), write_stdout);
   else
     write_errata(result, write_stdout);
 }

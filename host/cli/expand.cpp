@@ -5,6 +5,7 @@
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/document_json.hpp"
 #include "host/report/expansion_file.hpp"
 #include "host/requests/expand.hpp"
 
@@ -132,7 +133,7 @@ void write_result(const Options& options, const Common& common, const ExpandRequ
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.outputs[i]));
   }
   if (options.json)
-    write_json(result, write_stdout);
+    write_json(document(result), write_stdout);
   else
     write_screen(result, write_stdout);
   flush_stdout();

@@ -3,16 +3,15 @@
 #include "host/cli/drawing.hpp"
 #include "host/cli/mend_options.hpp"
 #include "host/cli/surface_outputs.hpp"
+#include "host/io/document_json.hpp"
 #include "host/requests/render.hpp"
 
 #include "host/error.hpp"
 #include "host/io/png.hpp"
 #include "host/io/shown.hpp"
 #include "host/number.hpp"
-#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <sstream>
@@ -120,7 +119,7 @@ void run(const Options& options, const Common& common) {
   }
   monitor.clear();
   if (options.json)
-    write_stdout(json_text(inflate_json(result, common.command)) + "\n");
+    write_json(document(result, common.command), write_stdout);
   else
     write_inflate(result, write_stdout);
 }

@@ -2,13 +2,11 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/mend_options.hpp"
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/off.hpp"
 #include "host/io/ply.hpp"
-#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 
@@ -52,7 +50,7 @@ void run(const Options& options, const Common& common) {
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   }
   if (options.json)
-    write_stdout(json_text(inspection_json(found, options.output)) + "\n");
+    write_json(document(found, options.output), write_stdout);
   else
     write_inspection(found, write_stdout);
 }

@@ -2,6 +2,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/expansion_words.hpp"
 #include "host/cli/mend_options.hpp"
+#include "host/io/document_json.hpp"
 #include "host/requests/paper_recipe.hpp"
 
 #include "host/error.hpp"
@@ -133,7 +134,7 @@ void run(const Options& options, const Common& common) {
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   }
   if (options.json)
-    write_json(result, common.command, write_stdout);
+    write_json(document(result, common.command), write_stdout);
   else
     write_screen(result, write_stdout);
 }

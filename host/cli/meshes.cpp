@@ -1,30 +1,29 @@
 #include "host/requests/meshes.hpp"
 #include "host/cli/commands.hpp"
 #include "host/error.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/io/document_json.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu::cli {
 namespace {
 
-void write_json() {
-  nlohmann::ordered_json named = nlohmann::ordered_json::array(), made = builtin_usages();
-  for (const auto& [e, path] : named_meshes()) {
-    named.push_back({{"name", e.name},
-                     {"path", path ? nlohmann::ordered_json(path->string()) : nlohmann::ordered_json()},
-                     {"file", e.file},
-                     {"sha256", e.sha256},
-                     {"vertices", e.vertices},
-                     {"triangles", e.triangles},
-                     {"what", e.what},
-                     {"source", e.source},
-                     {"licence", e.licence},
-                     {"scale", e.scale},
-                     {"axes", e.axes}});
-  }
-  write_stdout(json_text({{"schema", "cowgpu.meshes.v1"}, {"named", named}, {"builtin", made}}) + "\n");
+void write_document() {
+  List named, made;
+  for (const auto& [e, path] : named_meshes())
+    named.push_back(Object{{"name", e.name},
+                           {"path", path ? Value(path->string()) : Value()},
+                           {"file", e.file},
+                           {"sha256", e.sha256},
+                           {"vertices", e.vertices},
+                           {"triangles", e.triangles},
+                           {"what", e.what},
+                           {"source", e.source},
+                           {"licence", e.licence},
+                           {"scale", e.scale},
+                           {"axes", e.axes}});
+  for (const std::string& usage : builtin_usages()) made.push_back(usage);
+  write_json({{"schema", "cowgpu.meshes.v1"}, {"named", named}, {"builtin", made}}, write_stdout);
 }
 
 void write_text() {
@@ -76,7 +75,7 @@ void add_meshes(Command& app) {
   command->callback([command, json] {
     if (command->subcommand_given()) return;
     if (*json)
-      write_json();
+      write_document();
     else
       write_text();
   });

@@ -2,12 +2,11 @@
 
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/mesh_source.hpp"
-#include "host/report/json_parts.hpp"
 #include "host/requests/paper_recipe.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 
@@ -120,8 +119,7 @@ void add_application(Command& app, Common& common, const Application& applicatio
     if (call.paper && !application.paper_of_formulas) keep_paper_to_its_body(call.body, findings);
     check_stop(ConsoleMonitor(ProgressStyle::none));
     if (options->json)
-      write_stdout(json_text(findings_json(findings, fmt::format("cowgpu.{}.v1", application.name), common.command)) +
-                   "\n");
+      write_json(document(findings, fmt::format("cowgpu.{}.v1", application.name), common.command), write_stdout);
     else
       write_findings(findings, write_stdout);
   });

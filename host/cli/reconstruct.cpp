@@ -5,6 +5,7 @@
 
 #include "host/clock.hpp"
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/requests/reconstruct.hpp"
 
 #include <fmt/format.h>
@@ -80,7 +81,7 @@ void run(const Options& options, const Common& common) {
   if (!note.empty()) report.notes.push_back(note);
   report.total_seconds = seconds_since(start);
   if (options.json)
-    write_json(report, write_stdout);
+    write_json(document(report), write_stdout);
   else
     write_screen(report, write_stdout);
 }

@@ -1,6 +1,7 @@
 #include "host/cli/commands.hpp"
 
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/grid_file.hpp"
 #include "host/requests/roundtrip.hpp"
 
@@ -32,7 +33,7 @@ void run(const Options& options, const Common& common) {
   if (!note.empty()) result.notes.push_back(note);
   if (options.dry_run) return write_plan(result, write_stdout);
   if (options.json)
-    write_json(result, write_stdout);
+    write_json(document(result), write_stdout);
   else
     write_screen(result, write_stdout);
   if (result.passed()) return;

@@ -1,6 +1,7 @@
 #include "host/cli/commands.hpp"
 
 #include "host/cli/quantities.hpp"
+#include "host/io/document_json.hpp"
 #include "host/requests/spectrum.hpp"
 
 namespace cowgpu::cli {
@@ -16,7 +17,7 @@ void run(const Options& options, const Common& common) {
   SpectrumResult result = spectrum({options.input, stated_metres(options.length_unit), options.cross});
   result.command = common.command;
   if (options.json)
-    write_json(result, write_stdout);
+    write_json(document(result), write_stdout);
   else
     write_screen(result, write_stdout);
 }

@@ -5,10 +5,9 @@
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/io/document_json.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 
@@ -74,7 +73,7 @@ void run(const Options& options, const Common& common) {
   }
   if (file) {
     if (layout == Layout::json)
-      file->write(json_text(streamlines_json(result, common.command)) + "\n");
+      write_json(document(result, common.command), [&](std::string_view text) { file->write(text); });
     else
       write_streamlines_csv(result.table, [&](std::string_view text) { file->write(text); });
     check_stop(monitor);
@@ -82,7 +81,7 @@ void run(const Options& options, const Common& common) {
     if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   }
   if (options.json)
-    write_stdout(json_text(streamlines_json(result, common.command)) + "\n");
+    write_json(document(result, common.command), write_stdout);
   else
     write_streamlines(result, options.plane, write_stdout);
 }

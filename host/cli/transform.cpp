@@ -2,6 +2,7 @@
 
 #include "host/cli/quantities.hpp"
 #include "host/clock.hpp"
+#include "host/io/document_json.hpp"
 #include "host/requests/transform.hpp"
 
 #include <fmt/format.h>
@@ -65,7 +66,7 @@ void run(const Options& options, const Common& common, Request request, double r
   run.output = options.output;
   if (!common.quiet) say(fmt::format("cowgpu: wrote {}\n", options.output));
   if (options.json)
-    write_json(run, write_stdout);
+    write_json(document(run), write_stdout);
   else
     write_screen(run, write_stdout);
 }
@@ -79,15 +80,15 @@ void run_analysis(const Options& options, const Common& common) {
                          {*normalisation_named(options.normalisation), *phase_named(options.phase)}};
   run(options, common, std::move(request), seconds_since(start), analyse, file.get(),
       [&](const AnalyseResult& result, AtomicFile& to) {
-        write_coefficients(result.coefficients, file_format(options.output), to);
+        write_coefficient_set(result.coefficients, coefficient_format(options.output), to);
       });
 }
 
 void run_synthesis(const Options& options, const Common& common) {
   const auto file = open_output(options);
   const auto start = Clock::now();
-  SynthesiseRequest request{read_coefficients(options.input, stated_metres(options.length_unit)), options.input,
-                            options.lmax, *wanted_kind(options)};
+  SynthesiseRequest request{read_fields(options.input, stated_metres(options.length_unit)), options.input, options.lmax,
+                            *wanted_kind(options)};
   run(options, common, std::move(request), seconds_since(start), synthesise, file.get(),
       [&](const SynthesiseResult& result, AtomicFile& to) {
         const FileFormat format = file_format(options.output);

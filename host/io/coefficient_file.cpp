@@ -96,34 +96,26 @@ void write_coefficient_set(const CoefficientSet& set, CoefficientFormat format, 
   }
 }
 
-CoefficientFile read_coefficients(const std::filesystem::path& path, std::optional<double> metres) {
-  const CoefficientSet set = read_in_unit(path, "", metres);
-  CoefficientFile file;
-  // A file whose numbers fit no double in the orthonormal convention is a bad file, not a bad command line.
-  try {
-    file.coefficients = orthonormal(set);
-  } catch (const Error& error) {
-    throw Error(Fault::file_format, fmt::format("{}: {}", path.string(), error.what()));
-  }
-  file.convention = set.convention;
-  file.names = set.names;
+CoefficientSet read_fields(const std::filesystem::path& path, std::optional<double> metres) {
+  CoefficientSet set = read_in_unit(path, "", metres);
   if (set.kind == CoefficientKind::multipoles && set.names == std::vector<std::string>{""})
-    file.names = {mass_expansion};
-  file.notes = set.notes;
+    set.names = {mass_expansion};
   if (set.kind == CoefficientKind::multipoles && set.reference_radius) {
     std::string r;
     append_number(r, *set.reference_radius);
-    file.notes.push_back(expansion_note(r));
+    set.notes.push_back(expansion_note(r));
   }
   if (set.kind == CoefficientKind::potential)
-    file.notes.push_back("these are coefficients of a gravitational potential V: the field is V R / GM at r = R");
-  return file;
+    set.notes.push_back("these are coefficients of a gravitational potential V: the field is V R / GM at r = R");
+  return set;
 }
 
-void write_coefficients(const CoefficientFile& coefficients, FileFormat format, AtomicFile& file) {
-  CoefficientSet set = set_of(coefficients.coefficients, coefficients.convention);
-  if (!coefficients.names.empty()) set.names = coefficients.names;
-  write_coefficient_set(set, format == FileFormat::netcdf ? CoefficientFormat::netcdf : CoefficientFormat::csv, file);
+SphereCoefficients field_coefficients(const CoefficientSet& set, const std::string& name) {
+  try {
+    return orthonormal(set);
+  } catch (const Error& error) { // a bad file, not a bad command line
+    throw Error(Fault::file_format, fmt::format("{}: {}", name, error.what()));
+  }
 }
 
 } // namespace cowgpu

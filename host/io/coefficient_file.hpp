@@ -23,7 +23,6 @@
 
 #include "host/coefficient_set.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/file_format.hpp"
 #include "host/sphere_coefficients.hpp"
 
 #include <filesystem>
@@ -32,14 +31,6 @@
 #include <vector>
 
 namespace cowgpu {
-
-/// What a coefficient file holds, as complex orthonormal coefficients.
-struct CoefficientFile {
-  SphereCoefficients coefficients;
-  Convention convention;          ///< convention of the file; what is held here is complex and orthonormal always
-  std::vector<std::string> names; ///< one a field, empty where the file gives none
-  std::vector<std::string> notes; ///< sentences: what was left out, what the coefficients are
-};
 
 /// Largest degree that is read.
 inline constexpr int largest_file_degree = 8192;
@@ -68,12 +59,11 @@ std::string not_held(const CoefficientSet& set, CoefficientFormat format);
 /// with not_held().
 void write_coefficient_set(const CoefficientSet& set, CoefficientFormat format, AtomicFile& file);
 
-/// The same file as coefficients of fields: of multipoles Q_lm / R^l. Of the JSON of `cowgpu expand` the expansion `mass`.
-/// `metres` as read_in_unit() has it. Throws what that throws, and file_format for numbers that fit no double.
-CoefficientFile read_coefficients(const std::filesystem::path& path, std::optional<double> metres = {});
+/// The same for what takes any coefficients as those of fields (orthonormal()): multipoles without a name are called "mass", and
+/// the notes say what the field of multipoles and potentials is.
+CoefficientSet read_fields(const std::filesystem::path& path, std::optional<double> metres = {});
 
-/// Writes them in `convention`; commit() is left to the caller. Throws Error(cannot_write, too_large), and bad_argument as
-/// set_of() does.
-void write_coefficients(const CoefficientFile& coefficients, FileFormat format, AtomicFile& file);
+/// orthonormal() of a set that was read from the file `name`. Throws Error(file_format) for numbers that fit no double.
+SphereCoefficients field_coefficients(const CoefficientSet& set, const std::string& name);
 
 } // namespace cowgpu

@@ -2,11 +2,11 @@
 #include "host/io/coefficient_file.hpp"
 #include "host/io/coefficient_formats.hpp"
 #include "host/io/coefficient_metadata.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/number.hpp"
 #include "host/io/result_json.hpp"
 #include "host/io/shown.hpp"
 #include "host/sphere_transform.hpp"
-#include "host/version.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,7 +18,6 @@ namespace cowgpu {
 namespace {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 // Members of the document's top that are numbers, and those of its provenance.
 constexpr std::array number_words = {"reference_radius", "brillouin_radius",       "density", "mass",
@@ -207,47 +206,40 @@ CoefficientSet parse_json_coefficients(const std::string& bytes, const std::stri
 }
 
 void write_json_coefficients(const CoefficientSet& set, AtomicFile& file) {
-  ordered_json head = {{"schema", "cowgpu.coefficients.v1"},
-                       {"program", {{"name", "cowgpu"}, {"version", version}}},
-                       {"kind", name(set.kind)},
-                       {"form", name(set.form)},
-                       {"lmax", set.lmax},
-                       {"fields", set.names},
-                       {"units", set.units}};
-  ordered_json provenance = ordered_json::object(), remarks = ordered_json::object();
+  Object all = {{"schema", "cowgpu.coefficients.v1"},
+                {"program", program()},
+                {"kind", name(set.kind)},
+                {"form", name(set.form)},
+                {"lmax", set.lmax},
+                {"fields", set.names},
+                {"units", set.units}};
+  Object provenance, remarks;
   const auto among = [](const auto& words, const std::string& key) {
     return std::find(words.begin(), words.end(), key) != words.end();
   };
   for (const auto& [key, text] : metadata_of(set)) {
-    if (among(provenance_words, key)) provenance[key] = text;
-    if (key.starts_with("remark.")) remarks[key.substr(7)] = text;
-    if (among(text_words, key) || key == "coefficients_of") head[key] = text;
+    if (among(provenance_words, key)) provenance.add(key, text);
+    if (key.starts_with("remark.")) remarks.add(key.substr(7), text);
+    if ((among(text_words, key) && key != "kind" && key != "form") || key == "coefficients_of") all.add(key, text);
   }
   const std::array<std::optional<double>, 7> numbers = {
       set.reference_radius, set.brillouin_radius,       set.density, set.mass,
       set.second_moment,    set.gravitational_constant, set.gm};
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (numbers[i]) head[number_words[i]] = *numbers[i];
+    if (numbers[i]) all.add(number_words[i], *numbers[i]);
   if (set.origin) {
-    head["origin"] = {set.origin->x(), set.origin->y(), set.origin->z()};
-    if (!set.origin_kind.empty()) head["origin_kind"] = set.origin_kind;
+    all.add("origin", *set.origin);
+    if (!set.origin_kind.empty()) all.add("origin_kind", set.origin_kind);
   }
-  if (!provenance.empty()) head["provenance"] = provenance;
-  if (!remarks.empty()) head["remarks"] = remarks;
-  std::string text = terminal_json(head.dump(1, ' ', false, ordered_json::error_handler_t::replace));
-  text.pop_back(); // more members follow
-  text.erase(text.find_last_not_of("\n ") + 1);
-  file.write(text + ",\n \"coefficients\": [");
-  write_rows(set.lmax, file, [&](std::string& row, int l, int m) {
-    row += fmt::format("{}[{}, {}", l == 0 ? "\n" : ",\n", l, m);
-    for (int f = 0; f < set.fields; ++f) {
-      const std::size_t at = set.index(f, l, m);
-      row += ", ";
-      append_pair(row, set.first[at], set.second[at], ", ");
-    }
-    row += "]";
-  });
-  file.write("\n]\n}\n");
+  if (!provenance.members.empty()) all.add("provenance", std::move(provenance));
+  if (!remarks.members.empty()) all.add("remarks", std::move(remarks));
+  all.add("coefficients", CoefficientRows{set.lmax, [&set](int l, int m, Numbers& row) {
+                                            for (int f = 0; f < set.fields; ++f) {
+                                              row.push_back(set.first[set.index(f, l, m)]);
+                                              row.push_back(set.second[set.index(f, l, m)]);
+                                            }
+                                          }});
+  write_json(all, [&](std::string_view text) { file.write(text); });
 }
 
 } // namespace cowgpu

@@ -79,6 +79,27 @@ nlohmann::ordered_json parse_in_order(const std::string& name, const std::string
   return parse_as<nlohmann::ordered_json>(name, bytes);
 }
 
+Value value(const json& parsed) {
+  switch (parsed.type()) {
+  case json::value_t::boolean: return parsed.get<bool>();
+  case json::value_t::number_integer: return parsed.get<std::int64_t>();
+  case json::value_t::number_unsigned: return parsed.get<std::uint64_t>();
+  case json::value_t::number_float: return parsed.get<double>();
+  case json::value_t::string: return parsed.get<std::string>();
+  case json::value_t::array: {
+    List list;
+    for (const json& element : parsed) list.push_back(value(element));
+    return list;
+  }
+  case json::value_t::object: {
+    Object object;
+    for (const auto& [key, member] : parsed.items()) object.add(key, value(member));
+    return object;
+  }
+  default: return {};
+  }
+}
+
 json read(const std::filesystem::path& path) {
   const std::string name = path.string();
   json all = parse(path);

@@ -1,6 +1,7 @@
 // Parts of result files (data/schemas/cowgpu.result.v1.json) that the readers of expansions share.
 #pragma once
 
+#include "host/document.hpp"
 #include "host/mesh/placement.hpp"
 #include "host/sphere_coefficients.hpp"
 
@@ -19,6 +20,9 @@ nlohmann::json parse(const std::filesystem::path& path);
 nlohmann::json parse(const std::string& name, const std::string& bytes);
 /// The same with the members of objects as they stand.
 nlohmann::ordered_json parse_in_order(const std::string& name, const std::string& bytes);
+
+/// A part of a parsed document as a value of another document, its members by name.
+Value value(const nlohmann::json& parsed);
 
 /// A file; Error(file_format) where it is another document than a cowgpu.result.v1.
 nlohmann::json read(const std::filesystem::path& path);

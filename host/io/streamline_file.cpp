@@ -5,7 +5,6 @@
 #include "host/version.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <iterator>
@@ -13,8 +12,6 @@
 
 namespace cowgpu {
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr std::array<std::pair<FlowFlag, const char*>, 7> flag_names = {{{flow_slid, "slid"},
                                                                          {flow_stationary, "stationary"},
@@ -24,17 +21,13 @@ constexpr std::array<std::pair<FlowFlag, const char*>, 7> flag_names = {{{flow_s
                                                                          {flow_surface, "surface"},
                                                                          {flow_notch, "notch"}}};
 
-ordered_json vector_json(const Vec3& x) {
-  return {x.x(), x.y(), x.z()};
-}
-
 std::string vector_text(const Vec3& x) {
   return fmt::format("{},{},{}", x.x() + 0., x.y() + 0., x.z() + 0.); // no -0
 }
 
 } // namespace
 
-void write_streamlines_csv(const StreamlineTable& table, const std::function<void(std::string_view)>& sink) {
+void write_streamlines_csv(const StreamlineTable& table, const Sink& sink) {
   const Vec3 u = table.plane.u(), v = table.plane.v();
   const FlowPoints& lines = table.found.lines;
   std::string text =
@@ -61,51 +54,47 @@ void write_streamlines_csv(const StreamlineTable& table, const std::function<voi
   sink(text);
 }
 
-ordered_json streamlines_json(const StreamlineTable& table) {
+Object members(const StreamlineTable& table) {
   const Vec3 u = table.plane.u(), v = table.plane.v();
   const FlowPoints& lines = table.found.lines;
-  ordered_json cut = ordered_json::array(), all = ordered_json::array();
+  List cut, all;
   for (const CutLoop& loop : table.cut) {
-    ordered_json points = ordered_json::array();
-    for (const Vec3& x : loop.points) points.push_back({x.x(), x.y(), x.z(), u.dot(x), v.dot(x)});
-    cut.push_back({{"length", loop.length}, {"points", std::move(points)}});
+    List points;
+    for (const Vec3& x : loop.points) points.push_back(Numbers{x.x(), x.y(), x.z(), u.dot(x), v.dot(x)});
+    cut.push_back(Object{{"length", loop.length}, {"points", std::move(points)}});
   }
   for (std::size_t i = 0; i < lines.positions.size(); ++i) {
-    ordered_json path = ordered_json::array(), flags = ordered_json::array();
+    List path, flags;
     for (std::size_t k = lines.first[i]; k < lines.first[i + 1]; ++k) {
       const Vec3& x = lines.path[k];
-      path.push_back({lines.path_times[k], x.x(), x.y(), x.z(), u.dot(x), v.dot(x), table.found.distances[k]});
+      path.push_back(Numbers{lines.path_times[k], x.x(), x.y(), x.z(), u.dot(x), v.dot(x), table.found.distances[k]});
     }
     for (const auto& [flag, word] : flag_names)
       if (lines.flags[i] & flag) flags.push_back(word);
     const Vec3& direction = table.found.directions[i];
-    ordered_json line = {{"flags", std::move(flags)},
-                         {"slide_time", lines.slide_times[i]}, // infinite is null
-                         {"direction", vector_json(direction)},
-                         {"circle", {u.dot(direction), v.dot(direction)}},
-                         {"path", std::move(path)}};
-    if (!table.starts.loops.empty()) line["loop"] = table.starts.loops[i];
+    Object line = {{"flags", std::move(flags)},
+                   {"slide_time", lines.slide_times[i]}, // infinite where it does not slide
+                   {"direction", direction},
+                   {"circle", Numbers{u.dot(direction), v.dot(direction)}},
+                   {"path", std::move(path)}};
+    if (!table.starts.loops.empty()) line.add("loop", table.starts.loops[i]);
     all.push_back(std::move(line));
   }
   const FlowReport& counts = table.found.report;
-  return {{"mesh", {{"name", table.mesh}, {"sha256", table.sha256}}},
-          {"plane",
-           {{"normal", vector_json(table.plane.normal)},
-            {"offset", table.plane.offset},
-            {"axis_u", vector_json(u)},
-            {"axis_v", vector_json(v)}}},
-          {"origin", vector_json(table.origin)},
-          {"time", table.time},
-          {"tolerance", table.tolerance},
-          {"counts",
-           {{"lines", counts.points},
-            {"slid", counts.slid},
-            {"stationary", counts.stationary},
-            {"inside", counts.inside},
-            {"restarted", counts.restarted},
-            {"unfinished", counts.unfinished}}},
-          {"cut", std::move(cut)},
-          {"lines", std::move(all)}};
+  return {
+      {"mesh", Object{{"name", table.mesh}, {"sha256", table.sha256}}},
+      {"plane", Object{{"normal", table.plane.normal}, {"offset", table.plane.offset}, {"axis_u", u}, {"axis_v", v}}},
+      {"origin", table.origin},
+      {"time", table.time},
+      {"tolerance", table.tolerance},
+      {"counts", Object{{"lines", counts.points},
+                        {"slid", counts.slid},
+                        {"stationary", counts.stationary},
+                        {"inside", counts.inside},
+                        {"restarted", counts.restarted},
+                        {"unfinished", counts.unfinished}}},
+      {"cut", std::move(cut)},
+      {"lines", std::move(all)}};
 }
 
 } // namespace cowgpu

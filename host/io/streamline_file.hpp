@@ -9,9 +9,8 @@
 // JSON: data/schemas/cowgpu.streamlines.v1.json.
 #pragma once
 
+#include "host/document.hpp"
 #include "host/flow/streamlines.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <functional>
 #include <string>
@@ -31,9 +30,9 @@ struct StreamlineTable {
   Streamlines found;
 };
 
-void write_streamlines_csv(const StreamlineTable& table, const std::function<void(std::string_view)>& sink);
+void write_streamlines_csv(const StreamlineTable& table, const Sink& sink);
 
 /// The members mesh, plane, origin, time, tolerance, cut, counts, lines of the document.
-nlohmann::ordered_json streamlines_json(const StreamlineTable& table);
+Object members(const StreamlineTable& table);
 
 } // namespace cowgpu

@@ -1,10 +1,12 @@
 #include "host/io/surface_file.hpp"
 
-#include "host/coefficient_set.hpp"
 #include "host/error.hpp"
+#include "host/io/coefficient_file.hpp"
+#include "host/io/coefficient_metadata.hpp"
 #include "host/io/result_json.hpp"
 #include "host/io/shown.hpp"
 #include "host/map/map_method.hpp"
+#include "host/spectrum/convert.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
@@ -22,18 +24,8 @@ constexpr double largest_coefficient = 1e50;
 using nlohmann::json;
 using result_json::member;
 
-std::string chosen(const std::string& name, const json& expansions, const std::string& of) {
-  std::vector<std::string> there;
-  if (!expansions.is_object())
-    throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' must be an object", name));
-  for (const auto& [key, value] : expansions.items())
-    if (key != mass_expansion) there.push_back(key);
+std::string chosen(const std::string& name, const std::vector<std::string>& there, const std::string& of) {
   const auto has = [&](const std::string& key) { return std::find(there.begin(), there.end(), key) != there.end(); };
-  if (there.empty())
-    throw Error(Fault::file_format,
-                fmt::format("{}: this file holds no expansion of a surface; make one with `cowgpu expand MESH --of "
-                            "stretch -o FILE.json`",
-                            name));
   std::string list;
   for (const std::string& key : there) list += (list.empty() ? "" : ", ") + shown(key);
   if (!of.empty()) {
@@ -45,6 +37,20 @@ std::string chosen(const std::string& name, const json& expansions, const std::s
   if (there.size() == 1) return there.front();
   throw Error(Fault::bad_argument,
               fmt::format("{} has several expansions of a surface: {}; choose one with --of", name, list));
+}
+
+std::string chosen(const std::string& name, const json& expansions, const std::string& of) {
+  std::vector<std::string> there;
+  if (!expansions.is_object())
+    throw Error(Fault::file_format, fmt::format("{}: the member 'expansions' must be an object", name));
+  for (const auto& [key, value] : expansions.items())
+    if (key != mass_expansion) there.push_back(key);
+  if (there.empty())
+    throw Error(Fault::file_format,
+                fmt::format("{}: this file holds no expansion of a surface; make one with `cowgpu expand MESH --of "
+                            "stretch -o FILE.json`",
+                            name));
+  return chosen(name, there, of);
 }
 
 std::string text(const std::string& name, const json& object, const char* key) {
@@ -59,6 +65,24 @@ Vec3 point(const std::string& name, const json& object, const char* key) {
       !std::all_of(value.begin(), value.end(), [](const json& c) { return c.is_number(); }))
     throw Error(Fault::file_format, fmt::format("{}: the member '{}' is not three numbers", name, key));
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
+[[noreturn]] void not_a_surface(const std::string& file, const std::string& what) {
+  throw Error(Fault::file_format,
+              fmt::format("{} holds {}, and a body is rebuilt from coefficients of a surface: fields f_r, f_dtheta, "
+                          "f_dphi, x, y, z, as `cowgpu expand --of stretch -o FILE` writes them; or take the mesh",
+                          file, what));
+}
+
+// The columns of `cowgpu expand -o FILE.csv` are named after their expansion.
+CoefficientSet read_fields_of_surface(const std::filesystem::path& path, const std::string& of) {
+  CoefficientSet set = read_coefficient_set(path, of);
+  if (!of.empty() || set.kind != CoefficientKind::field) return set;
+  std::vector<std::string> there;
+  for (const std::string& field : set.names)
+    if (field.ends_with("_f_r")) there.push_back(field.substr(0, field.size() - 4));
+  if (there.empty()) return set;
+  return read_coefficient_set(path, chosen(path.string(), there, of));
 }
 
 } // namespace
@@ -106,6 +130,35 @@ SurfaceFile read_surface(const std::filesystem::path& path, const std::string& o
       throw Error(Fault::file_format,
                   fmt::format("{}: a coefficient of {} has the size {:g}; surfaces up to {:g} are rebuilt", name,
                               shown(file.name), std::abs(a), largest_coefficient));
+  return file;
+}
+
+bool holds_expansions(const std::filesystem::path& path) {
+  if (!is_result_file(path)) return false;
+  const json document = result_json::parse(path);
+  return document.is_object() && document.contains("expansions");
+}
+
+SurfaceFile read_surface_fields(const std::filesystem::path& path, const std::string& of) {
+  const std::string name = path.string();
+  const CoefficientSet set = read_fields_of_surface(path, of);
+  if (set.kind != CoefficientKind::field)
+    not_a_surface(name, fmt::format("coefficients of a mass ({})", cowgpu::name(set.kind)));
+  if (set.names != std::vector<std::string>(surface_field_names.begin(), surface_field_names.end()))
+    not_a_surface(name, fmt::format("coefficients of {} field{}{}", set.fields, set.fields == 1 ? "" : "s",
+                                    set.names[0].empty() ? "" : fmt::format(" ({} ...)", set.names[0])));
+  SurfaceFile file;
+  file.name = of.empty() ? "surface" : of;
+  file.expansion.coefficients = orthonormal(set);
+  file.expansion.origin = set.origin.value_or(Vec3::Zero());
+  file.expansion.mean_dtheta = remark_number(set, name, "removed_mean_f_dtheta", 0);
+  file.expansion.mean_dphi = remark_number(set, name, "removed_mean_f_dphi", 0);
+  file.mesh = set.provenance.mesh;
+  file.placement.units.stated = set.in_metres();
+  file.notes = set.notes;
+  if (!(spherical_radius(file.expansion) > 0))
+    throw Error(Fault::file_format,
+                fmt::format("{}: the coefficient (0, 0) of f_r must be above 0: it gives the mean distance", name));
   return file;
 }
 

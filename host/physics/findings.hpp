@@ -1,18 +1,12 @@
-// What an application of the multipoles found, in one form for the screen and for JSON.
+// What an application of the multipoles found, in one form for the screen and for its document (host/document.hpp).
 #pragma once
 
-#include "host/types.hpp"
-
-#include <Eigen/Core>
+#include "host/document.hpp"
 
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace cowgpu::physics {
-
-/// monostate: not known, null in JSON. A matrix is a list of rows.
-using Value = std::variant<std::monostate, double, std::string, bool, Vec3, Eigen::Matrix3d>;
 
 /// A result: a member of the JSON document and a line on the screen.
 struct Finding {

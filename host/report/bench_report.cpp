@@ -1,22 +1,21 @@
 #include "host/report/bench_report.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu {
 
-nlohmann::ordered_json bench_json(const BenchResult& result) {
-  nlohmann::ordered_json devices = nlohmann::ordered_json::array(), rows = nlohmann::ordered_json::array();
+Object document(const BenchResult& result) {
+  List devices, rows;
   for (const BenchPath& path : result.paths)
-    devices.push_back({{"path", path.name}, {"device", device_line(path.device)}, {"peak", path.peak}});
+    devices.push_back(Object{{"path", path.name}, {"device", device_line(path.device)}, {"peak", path.peak}});
   for (const BenchRow& row : result.rows)
-    rows.push_back({{"lmax", row.lmax},
-                    {"path", result.paths[row.path].name},
-                    {"seconds", row.seconds},
-                    {"flops_per_second", row.flops_per_second},
-                    {"of_peak", row.flops_per_second / result.paths[row.path].peak},
-                    {"elements", row.elements},
-                    {"full_elements", row.full_elements}});
+    rows.push_back(Object{{"lmax", row.lmax},
+                          {"path", result.paths[row.path].name},
+                          {"seconds", row.seconds},
+                          {"flops_per_second", row.flops_per_second},
+                          {"of_peak", row.flops_per_second / result.paths[row.path].peak},
+                          {"elements", row.elements},
+                          {"full_elements", row.full_elements}});
   return {{"schema", "cowgpu.bench.v1"},
           {"mesh", mesh_line(result.mesh)},
           {"runs", result.runs},

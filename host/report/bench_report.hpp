@@ -5,8 +5,6 @@
 #include "host/mesh/raw_mesh.hpp"
 #include "host/report/result.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <vector>
 
@@ -37,7 +35,7 @@ struct BenchResult {
 };
 
 /// The document cowgpu.bench.v1.
-nlohmann::ordered_json bench_json(const BenchResult& result);
+Object document(const BenchResult& result);
 
 /// A table for the screen.
 void write_bench(const BenchResult& result, const Sink& sink);

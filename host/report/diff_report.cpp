@@ -1,35 +1,24 @@
 #include "host/report/diff_report.hpp"
 
 #include "host/io/coefficient_metadata.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <cmath>
 
 namespace cowgpu {
 namespace {
 
-// Infinity has no place in JSON.
-nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json json_of(const FieldDifference& field) {
-  nlohmann::ordered_json degrees = nlohmann::ordered_json::array();
+Object members(const FieldDifference& field) {
+  List degrees;
   for (std::size_t l = 0; l < field.norm.size(); ++l)
-    degrees.push_back({{"l", l},
-                       {"norm", field.norm[l]},
-                       {"difference", field.difference[l]},
-                       {"relative", number_or_null(field.relative(l))},
-                       {"worst_m", field.worst_order[l]}});
-  return {{"name", field.name},
-          {"norm", field.total_norm},
-          {"difference", field.total},
-          {"relative", number_or_null(field.total_relative())},
-          {"worst", number_or_null(field.worst)},
-          {"worst_degree", field.worst_degree},
+    degrees.push_back(Object{{"l", l},
+                             {"norm", field.norm[l]},
+                             {"difference", field.difference[l]},
+                             {"relative", field.relative(l)},
+                             {"worst_m", field.worst_order[l]}});
+  return {{"name", field.name},        {"norm", field.total_norm},
+          {"difference", field.total}, {"relative", field.total_relative()},
+          {"worst", field.worst},      {"worst_degree", field.worst_degree},
           {"degrees", degrees}};
 }
 
@@ -56,33 +45,25 @@ void write_screen(const DiffResult& found, const Sink& sink) {
                                                         : ", beyond the tolerance"));
 }
 
-void write_json(const DiffResult& found, const Sink& sink) {
+Object document(const DiffResult& found) {
   const CoefficientDifference& result = found.difference;
-  nlohmann::ordered_json fields = nlohmann::ordered_json::array();
-  for (const FieldDifference& field : result.fields) fields.push_back(json_of(field));
-  nlohmann::ordered_json all = {{"schema", "cowgpu.diff.v1"},
-                                {"program", program_json()},
-                                {"command", found.command},
-                                {"created", found.created},
-                                {"first", found.first},
-                                {"second", found.second},
-                                {"notes", found.notes},
-                                {"kind", name(result.kind)},
-                                {"normalisation", name(result.convention.normalisation)},
-                                {"phase", name(result.convention.phase)},
-                                {"reference_radius", nullptr},
-                                {"lmax", result.lmax},
-                                {"unlike", result.unlike},
-                                {"fields", fields},
-                                {"worst", number_or_null(result.worst())},
-                                {"tolerance", nullptr},
-                                {"passed", nullptr}};
-  if (result.reference_radius > 0) all["reference_radius"] = result.reference_radius;
-  if (found.tolerance) {
-    all["tolerance"] = *found.tolerance;
-    all["passed"] = result.worst() <= *found.tolerance;
-  }
-  sink(json_text(all) + "\n");
+  List fields;
+  for (const FieldDifference& field : result.fields) fields.push_back(members(field));
+  Object all = opening("cowgpu.diff.v1", found.command, found.created);
+  all.add({{"first", found.first},
+           {"second", found.second},
+           {"notes", found.notes},
+           {"kind", name(result.kind)},
+           {"normalisation", name(result.convention.normalisation)},
+           {"phase", name(result.convention.phase)},
+           {"reference_radius", result.reference_radius > 0 ? Value(result.reference_radius) : Value()},
+           {"lmax", result.lmax},
+           {"unlike", result.unlike},
+           {"fields", fields},
+           {"worst", result.worst()},
+           {"tolerance", found.tolerance},
+           {"passed", found.tolerance ? Value(result.worst() <= *found.tolerance) : Value()}});
+  return all;
 }
 
 } // namespace cowgpu

@@ -23,7 +23,7 @@ struct DiffResult {
 /// For people: a table of each field by degree.
 void write_screen(const DiffResult& result, const Sink& sink);
 
-/// As JSON after data/schemas/cowgpu.diff.v1.json; what is not finite is null.
-void write_json(const DiffResult& result, const Sink& sink);
+/// After data/schemas/cowgpu.diff.v1.json.
+Object document(const DiffResult& result);
 
 } // namespace cowgpu

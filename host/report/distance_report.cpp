@@ -1,9 +1,8 @@
 #include "host/report/distance_report.hpp"
 
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -37,43 +36,30 @@ std::string lattice_text(const PointLattice& lattice) {
                      lattice.counts[1], lattice.counts[2], lattice.spacing, lattice_enlargement);
 }
 
-nlohmann::ordered_json distance_json(const DistanceResult& result, const std::vector<std::string>& command) {
+Object document(const DistanceResult& result, const std::vector<std::string>& command) {
   const Summary summary = summary_of(result.points);
-  nlohmann::ordered_json all = {{"schema", "cowgpu.distance.v1"},
-                                {"program", program_json()},
-                                {"command", command},
-                                {"created", utc_now()},
-                                {"mesh",
-                                 {{"name", result.mesh.name},
-                                  {"sha256", result.mesh.sha256},
-                                  {"vertices", result.mesh.vertices.size()},
-                                  {"faces", result.mesh.faces.size()}}},
-                                {"points", result.queries.size()},
-                                {"signed", result.with_sign},
-                                {"outside", summary.outside},
-                                {"on_surface", summary.on_surface},
-                                {"smallest", summary.smallest},
-                                {"largest", summary.largest},
-                                {"device", device_json(result.device)},
-                                {"notes", result.notes},
-                                {"timings",
-                                 {{"read", result.read_seconds},
-                                  {"setup", result.setup_seconds},
-                                  {"distance", result.report.seconds},
-                                  {"write", result.write_seconds}}}};
-  if (result.with_sign) {
-    all["inside"] = summary.inside;
-    all["overlapped"] = summary.overlapped;
-  }
-  if (!result.input.empty()) all["input"] = result.input;
-  if (!result.output.empty()) all["output"] = result.output;
-  if (result.lattice) {
-    const PointLattice& g = *result.lattice;
-    all["grid"] = {{"counts", g.counts},
-                   {"first", {g.first.x(), g.first.y(), g.first.z()}},
-                   {"spacing", g.spacing},
-                   {"enlargement", lattice_enlargement}};
-  }
+  Object all = opening("cowgpu.distance.v1", command);
+  all.add({{"mesh", members(result.mesh)},
+           {"points", result.queries.size()},
+           {"signed", result.with_sign},
+           {"outside", summary.outside},
+           {"on_surface", summary.on_surface},
+           {"smallest", summary.smallest},
+           {"largest", summary.largest},
+           {"device", members(result.device)},
+           {"notes", result.notes},
+           {"timings", Object{{"read", result.read_seconds},
+                              {"setup", result.setup_seconds},
+                              {"distance", result.report.seconds},
+                              {"write", result.write_seconds}}}});
+  if (result.with_sign) all.add({{"inside", summary.inside}, {"overlapped", summary.overlapped}});
+  if (!result.input.empty()) all.add("input", result.input);
+  if (!result.output.empty()) all.add("output", result.output);
+  if (const auto& lattice = result.lattice)
+    all.add("grid", Object{{"counts", lattice->counts},
+                           {"first", lattice->first},
+                           {"spacing", lattice->spacing},
+                           {"enlargement", lattice_enlargement}});
   return all;
 }
 

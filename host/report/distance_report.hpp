@@ -6,8 +6,6 @@
 #include "host/mesh/raw_mesh.hpp"
 #include "host/report/result.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,7 +36,7 @@ struct DistanceResult {
 std::string lattice_text(const PointLattice& lattice);
 
 /// After data/schemas/cowgpu.distance.v1.json.
-nlohmann::ordered_json distance_json(const DistanceResult& result, const std::vector<std::string>& command);
+Object document(const DistanceResult& result, const std::vector<std::string>& command);
 
 /// Lines for the screen.
 void write_distance(const DistanceResult& result, const Sink& sink);

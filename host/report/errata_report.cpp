@@ -1,31 +1,29 @@
 #include "host/report/errata_report.hpp"
 
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu {
 
-using nlohmann::ordered_json;
-
-ordered_json errata_json(const ErrataResult& result, const std::vector<std::string>& command) {
-  ordered_json list = ordered_json::array();
+Object document(const ErrataResult& result, const std::vector<std::string>& command) {
+  List list;
   for (const paper::Erratum& e : paper::errata()) {
-    ordered_json numbers = ordered_json::array();
+    List numbers;
     for (const physics::Comparison& n : result.numbers)
       if (n.erratum == e.number)
         numbers.push_back(
-            {{"quantity", n.quantity}, {"right", n.ours}, {"uncertainty", n.uncertainty}, {"paper", n.printed}});
-    list.push_back({{"number", e.number},
-                    {"paper", e.printed},
-                    {"right", e.right},
-                    {"why", e.why},
-                    {"shown_by", e.shown_by},
-                    {"numbers", numbers}});
+            Object{{"quantity", n.quantity}, {"right", n.ours}, {"uncertainty", n.uncertainty}, {"paper", n.printed}});
+    list.push_back(Object{{"number", e.number},
+                          {"paper", e.printed},
+                          {"right", e.right},
+                          {"why", e.why},
+                          {"shown_by", e.shown_by},
+                          {"numbers", numbers}});
   }
-  return {{"schema", "cowgpu.errata.v1"}, {"program", program_json()}, {"command", command},
-          {"created", utc_now()},         {"notes", result.notes},     {"errata", list}};
+  Object all = opening("cowgpu.errata.v1", command);
+  all.add({{"notes", result.notes}, {"errata", list}});
+  return all;
 }
 
 void write_errata(const ErrataResult& result, const Sink& sink) {

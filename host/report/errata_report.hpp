@@ -4,8 +4,6 @@
 #include "host/paper/errata.hpp"
 #include "host/report/result.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <vector>
 
@@ -17,7 +15,7 @@ struct ErrataResult {
 };
 
 /// Every erratum with its numbers, after data/schemas/cowgpu.errata.v1.json.
-nlohmann::ordered_json errata_json(const ErrataResult& result, const std::vector<std::string>& command);
+Object document(const ErrataResult& result, const std::vector<std::string>& command);
 
 /// The same for the screen.
 void write_errata(const ErrataResult& result, const Sink& sink);

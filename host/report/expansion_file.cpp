@@ -1,6 +1,7 @@
 #include "host/report/expansion_file.hpp"
 
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/report/coefficient_sets.hpp"
 #include "host/spectrum/convert.hpp"
 
@@ -28,7 +29,7 @@ void write_expansion(const ExpandResult& result, CoefficientFormat format, Atomi
     check_stop(monitor);
     file.write(text);
   };
-  if (format == CoefficientFormat::json) return write_json(result, sink);
+  if (format == CoefficientFormat::json) return write_json(document(result), sink);
   if (format == CoefficientFormat::csv) return write_csv(result, sink);
   ConversionTarget target;
   target.form = Form::real;

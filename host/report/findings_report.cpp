@@ -1,9 +1,8 @@
 #include "host/report/findings_report.hpp"
 
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,28 +10,17 @@
 namespace cowgpu {
 namespace {
 
-using nlohmann::ordered_json;
 using namespace physics;
-
-ordered_json vector_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
 
 // No number is -0 to a reader.
 double shown_number(double value) {
   return value == 0 ? 0.0 : value;
 }
 
-struct ToJson {
-  ordered_json operator()(std::monostate) const { return nullptr; }
-  ordered_json operator()(double value) const { return shown_number(value); } // infinity becomes null
-  ordered_json operator()(const std::string& value) const { return value; }
-  ordered_json operator()(bool value) const { return value; }
-  ordered_json operator()(const Vec3& value) const { return vector_json(value); }
-  ordered_json operator()(const Eigen::Matrix3d& value) const {
-    return {vector_json(value.row(0)), vector_json(value.row(1)), vector_json(value.row(2))};
-  }
-};
+Value shown_value(const Value& value) {
+  const double* number = value.get<double>();
+  return number ? Value(shown_number(*number)) : value;
+}
 
 std::string row_text(const Vec3& v) {
   return fmt::format("{:>22.14e}  {:>22.14e}  {:>22.14e}", shown_number(v.x()), shown_number(v.y()),
@@ -42,6 +30,8 @@ std::string row_text(const Vec3& v) {
 struct ToText {
   std::string operator()(std::monostate) const { return "-"; }
   std::string operator()(double value) const { return fmt::format("{:.12g}", shown_number(value)); }
+  std::string operator()(std::int64_t value) const { return std::to_string(value); }
+  std::string operator()(std::uint64_t value) const { return std::to_string(value); }
   std::string operator()(const std::string& value) const { return value; }
   std::string operator()(bool value) const { return value ? "yes" : "no"; }
   std::string operator()(const Vec3& value) const {
@@ -51,27 +41,32 @@ struct ToText {
   std::string operator()(const Eigen::Matrix3d& m) const {
     return fmt::format("\n    {}\n    {}\n    {}", row_text(m.row(0)), row_text(m.row(1)), row_text(m.row(2)));
   }
+  // Lists, objects and coefficients are in the document alone.
+  template <class Several>
+  std::string operator()(const Several&) const {
+    return "...";
+  }
 };
 
-ordered_json entries_json(const Table& table) {
-  ordered_json entries = ordered_json::array();
+List entries(const Table& table) {
+  List all;
   for (const auto& row : table.rows) {
-    ordered_json entry = ordered_json::object();
-    for (std::size_t c = 0; c < row.size(); ++c) entry[table.columns[c].name] = std::visit(ToJson{}, row[c]);
-    entries.push_back(std::move(entry));
+    Object entry;
+    for (std::size_t c = 0; c < row.size(); ++c) entry.add(table.columns[c].name, shown_value(row[c]));
+    all.push_back(std::move(entry));
   }
-  return entries;
+  return all;
 }
 
-ordered_json table_json(const Table& table) {
-  ordered_json columns = ordered_json::array(), units = ordered_json::array(), rows = ordered_json::array();
+Object members(const Table& table) {
+  List columns, units, rows;
   for (const Column& column : table.columns) {
     columns.push_back(column.name);
     units.push_back(column.unit);
   }
   for (const auto& row : table.rows) {
-    ordered_json values = ordered_json::array();
-    for (const Value& value : row) values.push_back(std::visit(ToJson{}, value));
+    List values;
+    for (const Value& value : row) values.push_back(shown_value(value));
     rows.push_back(std::move(values));
   }
   return {{"columns", columns}, {"units", units}, {"rows", rows}};
@@ -79,8 +74,8 @@ ordered_json table_json(const Table& table) {
 
 // Cells are shorter than lines of their own: six digits tell what a table is for, and the JSON has all of them.
 std::string cell_text(const Value& value) {
-  if (const double* number = std::get_if<double>(&value)) return fmt::format("{:.6g}", shown_number(*number));
-  return std::visit(ToText{}, value);
+  if (const double* number = value.get<double>()) return fmt::format("{:.6g}", shown_number(*number));
+  return std::visit(ToText{}, value.content);
 }
 
 void write_table(const Table& table, const Sink& sink) {
@@ -94,8 +89,8 @@ void write_table(const Table& table, const Sink& sink) {
     std::size_t width = 0;
     for (const std::string& cell : cells) width = std::max(width, cell.size());
     // Remarks at the end of the rows begin at one place and have any length.
-    const bool remarks = c + 1 == table.columns.size() && !table.rows.empty() &&
-                         std::holds_alternative<std::string>(table.rows.back().back());
+    const bool remarks =
+        c + 1 == table.columns.size() && !table.rows.empty() && table.rows.back().back().get<std::string>();
     for (std::size_t r = 0; r < cells.size(); ++r)
       lines[r] += remarks ? "  " + cells[r] : fmt::format("  {:>{}}", cells[r], width);
   }
@@ -109,32 +104,30 @@ double relative(const Comparison& row) {
 
 } // namespace
 
-ordered_json findings_json(const Findings& findings, const std::string& schema,
-                           const std::vector<std::string>& command) {
-  ordered_json input = {{"kind", findings.input_kind}, {"name", findings.input_name}};
-  if (!findings.input_sha256.empty()) input["sha256"] = findings.input_sha256;
-  ordered_json all = {{"schema", schema}, {"program", program_json()}, {"command", command}, {"created", utc_now()},
-                      {"input", input},   {"notes", findings.notes}};
-  ordered_json units = ordered_json::object();
+Object document(const Findings& findings, const std::string& schema, const std::vector<std::string>& command) {
+  Object input = {{"kind", findings.input_kind}, {"name", findings.input_name}};
+  if (!findings.input_sha256.empty()) input.add("sha256", findings.input_sha256);
+  Object all = opening(schema, command), units;
+  all.add({{"input", input}, {"notes", findings.notes}});
   for (const Finding& row : findings.rows) {
-    all[row.key] = std::visit(ToJson{}, row.value);
-    if (!row.unit.empty()) units[row.key] = row.unit;
+    all.add(row.key, shown_value(row.value));
+    if (!row.unit.empty()) units.add(row.key, row.unit);
   }
   for (const Table& table : findings.tables) {
-    all[table.key] = table.as_entries ? entries_json(table) : table_json(table);
+    all.add(table.key, table.as_entries ? Value(entries(table)) : Value(members(table)));
     for (const Column& column : table.columns)
-      if (table.as_entries && !column.unit.empty()) units[table.key + "." + column.name] = column.unit;
+      if (table.as_entries && !column.unit.empty()) units.add(table.key + "." + column.name, column.unit);
   }
-  all["units"] = units;
+  all.add("units", units);
   if (findings.paper.empty()) return all;
-  ordered_json paper = ordered_json::array();
+  List paper;
   for (const Comparison& row : findings.paper)
-    paper.push_back({{"quantity", row.quantity},
-                     {"ours", row.ours},
-                     {"paper", row.printed},
-                     {"relative_difference", relative(row)},
-                     {"why", row.why}});
-  all["paper"] = paper;
+    paper.push_back(Object{{"quantity", row.quantity},
+                           {"ours", row.ours},
+                           {"paper", row.printed},
+                           {"relative_difference", relative(row)},
+                           {"why", row.why}});
+  all.add("paper", paper);
   return all;
 }
 
@@ -142,12 +135,12 @@ void write_findings(const Findings& findings, const Sink& sink) {
   sink(findings.title + "\n");
   for (const std::string& note : findings.notes) sink("note: " + note + "\n");
   for (const Finding& row : findings.rows) {
-    if (std::holds_alternative<std::monostate>(row.value)) {
+    if (row.value.get<std::monostate>()) {
       if (!row.missing.empty()) sink(fmt::format("  {:<38} {}\n", row.label, row.missing));
       continue;
     }
-    const bool matrix = std::holds_alternative<Eigen::Matrix3d>(row.value);
-    const std::string value = std::visit(ToText{}, row.value);
+    const bool matrix = row.value.get<Eigen::Matrix3d>();
+    const std::string value = std::visit(ToText{}, row.value.content);
     if (matrix)
       sink(fmt::format("  {}{}{}\n", row.label, row.unit.empty() ? "" : ", " + row.unit, value));
     else

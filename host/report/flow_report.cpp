@@ -1,7 +1,6 @@
 #include "host/report/flow_result.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,35 +8,23 @@
 namespace cowgpu {
 namespace {
 
-using nlohmann::ordered_json;
-
 std::string point_text(const Vec3& p) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
 }
 
-ordered_json point_json(const Vec3& p) {
-  return {p.x(), p.y(), p.z()};
-}
-
-ordered_json rows_json(const std::vector<std::array<double, 6>>& degrees) {
-  ordered_json rows = ordered_json::array();
-  for (const auto& row : degrees) rows.push_back(row);
-  return rows;
-}
-
-ordered_json sheets_json(const std::vector<SheetReport>& sheets) {
-  ordered_json levels = ordered_json::array();
+List entries(const std::vector<SheetReport>& sheets) {
+  List levels;
   for (const SheetReport& s : sheets)
-    levels.push_back({{"triangles", s.faces},
-                      {"flipped", s.flipped_faces},
-                      {"flat", s.flat_faces},
-                      {"most_sheets", s.most_sheets},
-                      {"folded_points", s.folded_points},
-                      {"degree", {s.least_degree, s.largest_degree}}});
+    levels.push_back(Object{{"triangles", s.faces},
+                            {"flipped", s.flipped_faces},
+                            {"flat", s.flat_faces},
+                            {"most_sheets", s.most_sheets},
+                            {"folded_points", s.folded_points},
+                            {"degree", Numbers{s.least_degree, s.largest_degree}}});
   return levels;
 }
 
-ordered_json sutures_json(const LevelSetSutures& sutures) {
+Object members(const LevelSetSutures& sutures) {
   const SutureReport& jumps = sutures.jumps;
   return {{"threshold", sutures.threshold},
           {"length", jumps.length},
@@ -45,17 +32,26 @@ ordered_json sutures_json(const LevelSetSutures& sutures) {
           {"largest", jumps.largest},
           {"theta", jumps.theta},
           {"phi", jumps.phi},
-          {"box", {point_json(jumps.low), point_json(jumps.high)}},
-          {"slope_degrees", {sutures.slope_from, sutures.slope_to}},
-          {"slopes", sutures.slopes}}; // the library writes NaN as null
+          {"box", List{jumps.low, jumps.high}},
+          {"slope_degrees", List{sutures.slope_from, sutures.slope_to}},
+          {"slopes", sutures.slopes}};
 }
 
-ordered_json converged_json(const ConvergedTable& table) {
+Object members(const LevelSetReport& level_set, const std::string& failure) {
+  return {{"queries", level_set.queries},
+          {"largest_residual", level_set.largest_residual},
+          {"least_slope", level_set.least_slope},
+          {"unsettled", level_set.unsettled},
+          {"unsettled_angle", level_set.unsettled_angle},
+          {"failure", known_text(failure)}};
+}
+
+Object members(const ConvergedTable& table) {
   const SphereCoefficients& a = table.expansion.coefficients;
-  ordered_json rows = ordered_json::array();
+  List rows;
   for (int l = 0; l <= a.lmax; ++l)
     for (int m = 0; m <= l; ++m) {
-      ordered_json row = {l, m};
+      List row = {l, m};
       for (int f = 0; f < a.fields; ++f) {
         row.push_back(a.at(f, l, m).real());
         row.push_back(a.at(f, l, m).imag());
@@ -63,8 +59,8 @@ ordered_json converged_json(const ConvergedTable& table) {
       rows.push_back(std::move(row));
     }
   return {{"meaning", "sheets"},
-          {"removed_means", {{"f_dtheta", table.expansion.mean_dtheta}, {"f_dphi", table.expansion.mean_dphi}}},
-          {"uncertainty", rows_json(table.uncertainty)},
+          {"removed_means", Object{{"f_dtheta", table.expansion.mean_dtheta}, {"f_dphi", table.expansion.mean_dphi}}},
+          {"uncertainty", table.uncertainty},
           {"coefficients", rows}};
 }
 
@@ -103,15 +99,9 @@ std::string star_shape_sentence(const StarShapeTime& star, double time) {
   return "whether the inflated body is star-shaped at T is not decided: T lies between the bounds of t*";
 }
 
-ordered_json star_shape_json(const StarShapeTime& star) {
-  return {{"lower", star.lower},
-          {"upper", star.upper},
-          {"given_up", star.given_up},
-          {"point", point_json(star.point)},
-          {"normal", point_json(star.normal)},
-          {"place", point_json(star.place)},
-          {"regions", star.regions},
-          {"queries", star.queries}};
+Object members(const StarShapeTime& star) {
+  return {{"lower", star.lower},   {"upper", star.upper}, {"given_up", star.given_up}, {"point", star.point},
+          {"normal", star.normal}, {"place", star.place}, {"regions", star.regions},   {"queries", star.queries}};
 }
 
 std::string flow_points_text(const FlowReport& points) {
@@ -125,45 +115,34 @@ std::string flow_points_text(const FlowReport& points) {
   return text;
 }
 
-ordered_json flow_points_json(const FlowReport& points) {
-  ordered_json json = {{"points", points.points},   {"slid", points.slid},           {"stationary", points.stationary},
-                       {"inside", points.inside},   {"restarted", points.restarted}, {"unfinished", points.unfinished},
-                       {"queries", points.queries}, {"events", points.events},       {"steps", points.steps},
-                       {"seconds", points.seconds}};
-  if (points.slid > 0) {
-    json["first_slide"] = points.first_slide;
-    json["median_slide"] = points.median_slide;
-    json["slide_box"] = {point_json(points.slide_low), point_json(points.slide_high)};
-  }
-  return json;
+Object members(const FlowReport& points) {
+  Object all = {{"points", points.points},   {"slid", points.slid},           {"stationary", points.stationary},
+                {"inside", points.inside},   {"restarted", points.restarted}, {"unfinished", points.unfinished},
+                {"queries", points.queries}, {"events", points.events},       {"steps", points.steps},
+                {"seconds", points.seconds}};
+  if (points.slid > 0)
+    all.add({{"first_slide", points.first_slide},
+             {"median_slide", points.median_slide},
+             {"slide_box", List{points.slide_low, points.slide_high}}});
+  return all;
 }
 
-ordered_json flow_json(const FlowResult& flow) {
-  const ordered_json star_shaped = flow.time >= flow.star.upper  ? ordered_json(true)
-                                   : flow.time < flow.star.lower ? ordered_json(false)
-                                                                 : ordered_json();
-  ordered_json json = {{"meaning", flow.meaning},
-                       {"time", flow.time},
-                       {"time_choice", flow.time_choice},
-                       {"star_shape", star_shape_json(flow.star)},
-                       {"star_shaped", star_shaped},
-                       {"one_to_one", star_shaped},
-                       {"points", flow_points_json(flow.points)},
-                       {"sheets", sheets_json(flow.sheets)},
-                       {"uncertainty", rows_json(flow.uncertainty)}};
-  if (flow.level_set)
-    json["level_set"] = {{"queries", flow.level_set->queries},
-                         {"largest_residual", flow.level_set->largest_residual},
-                         {"least_slope", flow.level_set->least_slope},
-                         {"unsettled", flow.level_set->unsettled},
-                         {"unsettled_angle", flow.level_set->unsettled_angle},
-                         {"failure", flow.failure.empty() ? ordered_json() : ordered_json(flow.failure)}};
-  if (flow.sutures) json["sutures"] = sutures_json(*flow.sutures);
-  if (flow.converged) json["converged"] = converged_json(*flow.converged);
-  return json;
+Object members(const FlowResult& flow) {
+  const Value star_shaped = flow.time >= flow.star.upper  ? Value(true)
+                            : flow.time < flow.star.lower ? Value(false)
+                                                          : Value();
+  Object all = {{"meaning", flow.meaning},         {"time", flow.time},
+                {"time_choice", flow.time_choice}, {"star_shape", members(flow.star)},
+                {"star_shaped", star_shaped},      {"one_to_one", star_shaped},
+                {"points", members(flow.points)},  {"sheets", entries(flow.sheets)},
+                {"uncertainty", flow.uncertainty}};
+  if (flow.level_set) all.add("level_set", members(*flow.level_set, flow.failure));
+  if (flow.sutures) all.add("sutures", members(*flow.sutures));
+  if (flow.converged) all.add("converged", members(*flow.converged));
+  return all;
 }
 
-void write_flow_screen(const FlowResult& flow, const std::function<void(std::string_view)>& sink) {
+void write_flow_screen(const FlowResult& flow, const Sink& sink) {
   sink(fmt::format("  flow: {} at T = {:.9g} ({}): {}\n", flow.meaning, flow.time,
                    flow.time_choice == "auto" ? "the least time that is star-shaped" : flow.time_choice,
                    meaning_text(flow.meaning)));

@@ -1,9 +1,8 @@
 // What the distance's flow adds to a map or an expansion, ready to be shown.
 #pragma once
 
+#include "host/document.hpp"
 #include "host/flow/flow_map.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <array>
 #include <functional>
@@ -43,18 +42,18 @@ std::string star_shape_sentence(const StarShapeTime& star, double time);
 /// The bounds of the least time and where their witness is, in a sentence.
 std::string star_shape_text(const StarShapeTime& star);
 
-nlohmann::ordered_json star_shape_json(const StarShapeTime& star);
+Object members(const StarShapeTime& star);
 
 /// What befell the points that flowed, in a sentence.
 std::string flow_points_text(const FlowReport& points);
 
-nlohmann::ordered_json flow_points_json(const FlowReport& points);
+Object members(const FlowReport& points);
 
 /// The member `flow` of an expansion.
-nlohmann::ordered_json flow_json(const FlowResult& flow);
+Object members(const FlowResult& flow);
 
 /// Lines for the screen.
-void write_flow_screen(const FlowResult& flow, const std::function<void(std::string_view)>& sink);
+void write_flow_screen(const FlowResult& flow, const Sink& sink);
 
 /// The largest uncertainty among degrees 0 to `last`, by field.
 std::array<double, 6> largest_of(const std::vector<std::array<double, 6>>& rows, int last);

@@ -1,22 +1,15 @@
 #include "host/report/inflate_report.hpp"
 
+#include "host/report/document_parts.hpp"
 #include "host/report/flow_result.hpp"
-#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace cowgpu {
 namespace {
-
-using nlohmann::ordered_json;
-
-ordered_json text_or_null(const std::string& text) {
-  return text.empty() ? ordered_json() : ordered_json(text);
-}
 
 std::vector<std::string> all_notes(const InflateResult& result) {
   std::vector<std::string> notes = result.notes;
@@ -25,28 +18,28 @@ std::vector<std::string> all_notes(const InflateResult& result) {
   return notes;
 }
 
-ordered_json level_json(const InflatedBody& body) {
+Object members(const InflatedBody& body) {
   const Audit& a = body.audit;
   return {{"level", body.level},
           {"name", body.name},
-          {"volume", a.volume ? ordered_json(*a.volume) : ordered_json()},
+          {"volume", a.volume},
           {"area", a.area},
           {"volume_error", body.error.volume_error},
           {"area_error", body.error.area_error},
           {"vertices", a.vertices},
           {"faces", a.faces},
           {"shells", a.components},
-          {"genus", a.genus ? ordered_json(*a.genus) : ordered_json()},
+          {"genus", a.genus},
           {"closed", a.closed},
           {"cell", body.report.cell},
           {"queries", body.report.queries},
           {"largest_residual", body.report.largest_residual},
-          {"output", text_or_null(body.output)},
+          {"output", known_text(body.output)},
           {"seconds", body.report.seconds}};
 }
 
 // A value with its error, and no digits beyond that.
-std::string known_text(double value, double error) {
+std::string text_of(double value, double error) {
   const double parts = std::abs(value) / error;
   const int digits = std::isfinite(parts) && parts > 0 ? std::clamp(int(std::ceil(std::log10(parts))) + 1, 1, 8) : 8;
   return fmt::format("{:.{}g} +- {:.1e}", value, digits, error);
@@ -54,31 +47,23 @@ std::string known_text(double value, double error) {
 
 } // namespace
 
-ordered_json inflate_json(const InflateResult& result, const std::vector<std::string>& command) {
+Object document(const InflateResult& result, const std::vector<std::string>& command) {
   const Body& body = result.body;
-  const RawMesh& mesh = body.surface.mesh();
-  const Vec3& o = body.origin;
-  ordered_json bodies = ordered_json::array();
-  for (const InflatedBody& inflated : result.bodies) bodies.push_back(level_json(inflated));
-  return {{"schema", "cowgpu.inflate.v1"},
-          {"program", program_json()},
-          {"command", command},
-          {"created", utc_now()},
-          {"mesh",
-           {{"name", mesh.name},
-            {"sha256", mesh.sha256},
-            {"vertices", mesh.vertices.size()},
-            {"faces", mesh.faces.size()},
-            {"volume", body.volume},
-            {"area", body.area}}},
-          {"origin", {o.x(), o.y(), o.z()}},
-          {"origin_kind", body.origin_kind},
-          {"device", device_json(result.device)},
-          {"notes", all_notes(result)},
-          {"star_shape", result.star ? star_shape_json(*result.star) : ordered_json()},
-          {"levels", bodies},
-          {"picture", text_or_null(result.picture)},
-          {"timings", {{"star_shape", result.star_seconds}}}};
+  Object mesh = members(body.surface.mesh());
+  mesh.add({{"volume", body.volume}, {"area", body.area}});
+  List levels;
+  for (const InflatedBody& inflated : result.bodies) levels.push_back(members(inflated));
+  Object all = opening("cowgpu.inflate.v1", command);
+  all.add({{"mesh", mesh},
+           {"origin", body.origin},
+           {"origin_kind", body.origin_kind},
+           {"device", members(result.device)},
+           {"notes", all_notes(result)},
+           {"star_shape", result.star ? Value(members(*result.star)) : Value()},
+           {"levels", levels},
+           {"picture", known_text(result.picture)},
+           {"timings", Object{{"star_shape", result.star_seconds}}}});
+  return all;
 }
 
 void write_inflate(const InflateResult& result, const Sink& sink) {
@@ -96,8 +81,8 @@ void write_inflate(const InflateResult& result, const Sink& sink) {
                    "genus", "triangles", "cell", "seconds"));
   for (const InflatedBody& b : result.bodies)
     sink(fmt::format("  {:>10.6g}  {:>20}  {:>20}  {:>6}  {:>5}  {:>9}  {:>9.3g}  {:>8.3f}\n", b.level,
-                     known_text(b.audit.volume.value_or(std::nan("")), b.error.volume_error),
-                     known_text(b.audit.area, b.error.area_error), b.audit.components,
+                     text_of(b.audit.volume.value_or(std::nan("")), b.error.volume_error),
+                     text_of(b.audit.area, b.error.area_error), b.audit.components,
                      b.audit.genus ? fmt::format("{}", *b.audit.genus) : "-", b.audit.faces, b.report.cell,
                      b.report.seconds));
 }

@@ -7,8 +7,6 @@
 #include "host/mesh/body.hpp"
 #include "host/report/result.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,7 +35,7 @@ struct InflateResult {
 };
 
 /// After data/schemas/cowgpu.inflate.v1.json.
-nlohmann::ordered_json inflate_json(const InflateResult& result, const std::vector<std::string>& command);
+Object document(const InflateResult& result, const std::vector<std::string>& command);
 
 /// Lines for the screen.
 void write_inflate(const InflateResult& result, const Sink& sink);

@@ -1,22 +1,14 @@
 #include "host/report/inspection.hpp"
 
 #include "host/mesh/topology.hpp"
-#include "host/report/json_parts.hpp"
 #include "host/report/result.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
 namespace cowgpu {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json json_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
 
 Vec3 middle(const FacePair& pair) {
   return pair.how.from / 2 + pair.how.to / 2;
@@ -31,19 +23,19 @@ std::vector<const FacePair*> first_pairs(const SelfIntersections& found) {
   return first;
 }
 
-Json json_of(const RawMesh& mesh, const SelfIntersections& found) {
-  Json listed = Json::array();
+Object members(const RawMesh& mesh, const SelfIntersections& found) {
+  List listed;
   for (const FacePair* pair : first_pairs(found)) {
-    Json one = {
-        {"faces", {pair->first, pair->second}}, {"kind", name(pair->how.meeting)}, {"place", json_of(middle(*pair))}};
-    if (!mesh.face_lines.empty()) one["lines"] = {mesh.face_lines[pair->first], mesh.face_lines[pair->second]};
-    listed.push_back(one);
+    Object one = {
+        {"faces", List{pair->first, pair->second}}, {"kind", name(pair->how.meeting)}, {"place", middle(*pair)}};
+    if (!mesh.face_lines.empty()) one.add("lines", List{mesh.face_lines[pair->first], mesh.face_lines[pair->second]});
+    listed.push_back(std::move(one));
   }
   return {{"crossing", found.crossing}, {"overlapping", found.overlapping}, {"touching", found.touching},
           {"faces", found.faces},       {"complete", found.complete},       {"listed", listed}};
 }
 
-Json json_of(const RegionVolume& region, double volume) {
+Object members(const RegionVolume& region, double volume) {
   return {{"volume", region.volume}, {"uncertainty", region.uncertainty}, {"fraction", region.volume / volume}};
 }
 
@@ -55,58 +47,58 @@ std::string text_of(const RegionVolume& region, double volume) {
 
 } // namespace
 
-nlohmann::ordered_json inspection_json(const Inspection& found, const std::string& output) {
+Object document(const Inspection& found, const std::string& output) {
   const Audit& a = found.audit;
   const RawMesh& mesh = found.mesh;
-  Json out = {{"schema", "cowgpu.inspect.v1"},
-              {"name", mesh.name},
-              {"sha256", mesh.sha256},
-              {"vertices", a.vertices},
-              {"faces", a.faces},
-              {"edges", a.edges},
-              {"moments", found.moments},
-              {"maps", found.maps},
-              {"finite", a.finite},
-              {"closed", a.closed},
-              {"edge_manifold", a.edge_manifold},
-              {"vertex_manifold", a.vertex_manifold},
-              {"consistently_oriented", a.consistently_oriented},
-              {"outward", a.outward},
-              {"components", a.components},
-              {"cavities", a.cavities},
-              {"euler_characteristic", a.euler_characteristic},
-              {"open_edges", a.open_edges},
-              {"unbalanced_edges", a.unbalanced_edges},
-              {"crowded_edges", a.crowded_edges},
-              {"pinched_vertices", a.pinched_vertices},
-              {"unused_vertices", a.unused_vertices},
-              {"degenerate_faces", a.degenerate_faces},
-              {"duplicate_faces", a.duplicate_faces},
-              {"coincident_groups", a.coincident_groups}};
-  if (a.genus) out["genus"] = *a.genus;
+  Object out = {{"schema", "cowgpu.inspect.v1"},
+                {"name", mesh.name},
+                {"sha256", mesh.sha256},
+                {"vertices", a.vertices},
+                {"faces", a.faces},
+                {"edges", a.edges},
+                {"moments", found.moments},
+                {"maps", found.maps},
+                {"finite", a.finite},
+                {"closed", a.closed},
+                {"edge_manifold", a.edge_manifold},
+                {"vertex_manifold", a.vertex_manifold},
+                {"consistently_oriented", a.consistently_oriented},
+                {"outward", a.outward},
+                {"components", a.components},
+                {"cavities", a.cavities},
+                {"euler_characteristic", a.euler_characteristic},
+                {"open_edges", a.open_edges},
+                {"unbalanced_edges", a.unbalanced_edges},
+                {"crowded_edges", a.crowded_edges},
+                {"pinched_vertices", a.pinched_vertices},
+                {"unused_vertices", a.unused_vertices},
+                {"degenerate_faces", a.degenerate_faces},
+                {"duplicate_faces", a.duplicate_faces},
+                {"coincident_groups", a.coincident_groups}};
+  if (a.genus) out.add("genus", *a.genus);
   if (a.finite) {
-    out["area"] = a.area;
-    out["bounding_box"] = {json_of(a.box.min), json_of(a.box.max)};
-    out["shortest_edge"] = a.shortest_edge;
-    out["longest_edge"] = a.longest_edge;
+    out.add("area", a.area);
+    out.add("bounding_box", List{a.box.min, a.box.max});
+    out.add("shortest_edge", a.shortest_edge);
+    out.add("longest_edge", a.longest_edge);
   }
-  if (found.intersections) out["self_intersections"] = json_of(mesh, *found.intersections);
-  if (a.volume) out["volume"] = *a.volume;
+  if (found.intersections) out.add("self_intersections", members(mesh, *found.intersections));
+  if (a.volume) out.add("volume", *a.volume);
   if (found.overlap) {
-    out["overlapped"] = json_of(found.overlap->overlapped, *a.volume);
-    out["inverted"] = json_of(found.overlap->inverted, *a.volume);
+    out.add("overlapped", members(found.overlap->overlapped, *a.volume));
+    out.add("inverted", members(found.overlap->inverted, *a.volume));
   }
-  if (a.centre_of_mass) out["centre_of_mass"] = json_of(*a.centre_of_mass);
+  if (a.centre_of_mass) out.add("centre_of_mass", *a.centre_of_mass);
   if (found.brillouin_radius) {
-    out["brillouin_radius"] = *found.brillouin_radius;
-    out["inscribed_radius"] = found.inscribed_radius ? Json(*found.inscribed_radius) : Json();
+    out.add("brillouin_radius", *found.brillouin_radius);
+    out.add("inscribed_radius", found.inscribed_radius);
   }
   if (found.largest_ball)
-    out["largest_ball"] = {{"centre", json_of(found.largest_ball->centre)},
-                           {"radius", found.largest_ball->radius},
-                           {"bound", found.largest_ball->bound}};
-  out["notes"] = mesh.notes;
-  if (!output.empty()) out["output"] = output;
+    out.add("largest_ball", Object{{"centre", found.largest_ball->centre},
+                                   {"radius", found.largest_ball->radius},
+                                   {"bound", found.largest_ball->bound}});
+  out.add("notes", mesh.notes);
+  if (!output.empty()) out.add("output", output);
   return out;
 }
 

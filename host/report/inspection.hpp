@@ -7,8 +7,6 @@
 #include "host/mesh/self_intersections.hpp"
 #include "host/report/result.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <optional>
 #include <string>
 
@@ -30,7 +28,7 @@ struct Inspection {
 };
 
 /// After data/schemas/cowgpu.inspect.v1.json. `output`: the file that the mesh was written to, or "".
-nlohmann::ordered_json inspection_json(const Inspection& found, const std::string& output);
+Object document(const Inspection& found, const std::string& output);
 
 /// Lines for the screen.
 void write_inspection(const Inspection& found, const Sink& sink);

@@ -1,11 +1,10 @@
 #include "host/report/map_report.hpp"
 
 #include "host/mesh/topology.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/report/flow_result.hpp"
-#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,8 +14,6 @@
 
 namespace cowgpu {
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr std::size_t listed_faces = 5;
 
@@ -63,39 +60,38 @@ std::string repeats_text(const MapResult& result) {
   return text + fmt::format(", in {:.3f} s", result.repeat_seconds);
 }
 
-ordered_json stretch_json(const MapResult& result) {
-  if (!result.stretch) return nullptr;
-  ordered_json copies = ordered_json::array();
+Value stretch(const MapResult& result) {
+  if (!result.stretch) return {};
+  List copies;
   for (const StretchRepeat& r : result.repeats)
     copies.push_back(
-        {{"seed", r.seed}, {"energy", r.energy}, {"largest", r.largest}, {"rms", r.rms}, {"reached", r.reached}});
-  return {
-      {"energy", result.stretch->energy},
-      {"gradient", result.stretch->gradient},
-      {"relabellings", {{"count", result.repeats.size()}, {"reached", summary(result).reached}, {"copies", copies}}}};
+        Object{{"seed", r.seed}, {"energy", r.energy}, {"largest", r.largest}, {"rms", r.rms}, {"reached", r.reached}});
+  return Object{{"energy", result.stretch->energy},
+                {"gradient", result.stretch->gradient},
+                {"relabellings",
+                 Object{{"count", result.repeats.size()}, {"reached", summary(result).reached}, {"copies", copies}}}};
 }
 
-ordered_json quality_json(const MapQuality& q) {
-  ordered_json parts = ordered_json::array();
+Object members(const MapQuality& q) {
+  List parts;
   for (const UnseenPart& part : q.parts)
-    parts.push_back({{"triangles", part.triangles},
-                     {"area", part.area},
-                     {"middle", {part.middle.x(), part.middle.y(), part.middle.z()}}});
-  return {{"lmax", q.lmax},
-          {"cell", q.cell},
-          {"triangles", q.triangles},
-          {"degree", q.degree},
-          {"inside_out", q.inside_out},
-          {"flipped", {{"count", q.flipped.size()}, {"area", q.flipped_area}, {"faces", q.flipped}}},
-          {"flat", {{"count", q.flat.size()}, {"faces", q.flat}}},
-          {"log_area_ratio", quantiles_json(log_area_ratio_parts, q.log_area_ratio)},
-          {"shear", quantiles_json(shear_parts, q.shear)},
-          {"smallest_area", {{"steradians", q.smallest_area}, {"face", q.smallest_area_face}}},
-          {"smallest_height",
-           {{"radians", q.smallest_height}, {"cells", q.smallest_height / q.cell}, {"face", q.smallest_height_face}}},
-          {"seen", q.triangles - q.unseen},
-          {"unseen", {{"count", q.unseen}, {"area", q.unseen_area}, {"parts", parts}}},
-          {"sentences", q.sentences}};
+    parts.push_back(Object{{"triangles", part.triangles}, {"area", part.area}, {"middle", part.middle}});
+  return {
+      {"lmax", q.lmax},
+      {"cell", q.cell},
+      {"triangles", q.triangles},
+      {"degree", q.degree},
+      {"inside_out", q.inside_out},
+      {"flipped", Object{{"count", q.flipped.size()}, {"area", q.flipped_area}, {"faces", q.flipped}}},
+      {"flat", Object{{"count", q.flat.size()}, {"faces", q.flat}}},
+      {"log_area_ratio", quantiles(log_area_ratio_parts, q.log_area_ratio)},
+      {"shear", quantiles(shear_parts, q.shear)},
+      {"smallest_area", Object{{"steradians", q.smallest_area}, {"face", q.smallest_area_face}}},
+      {"smallest_height",
+       Object{{"radians", q.smallest_height}, {"cells", q.smallest_height / q.cell}, {"face", q.smallest_height_face}}},
+      {"seen", q.triangles - q.unseen},
+      {"unseen", Object{{"count", q.unseen}, {"area", q.unseen_area}, {"parts", parts}}},
+      {"sentences", q.sentences}};
 }
 
 } // namespace
@@ -138,36 +134,28 @@ void write_screen(const MapResult& result, const Sink& sink) {
   for (const std::string& sentence : q.sentences) sink("  " + sentence + ".\n");
 }
 
-void write_json(const MapResult& result, const std::vector<std::string>& command, const Sink& sink) {
-  const RawMesh& mesh = result.surface.closed().mesh();
+Object document(const MapResult& result, const std::vector<std::string>& command) {
   std::vector<std::string> notes = result.notes;
   notes.insert(notes.end(), result.map.notes.begin(), result.map.notes.end());
-  ordered_json all = {
-      {"schema", "cowgpu.map.v1"},
-      {"program", program_json()},
-      {"command", command},
-      {"created", utc_now()},
-      {"mesh",
-       {{"name", mesh.name},
-        {"sha256", mesh.sha256},
-        {"vertices", mesh.vertices.size()},
-        {"faces", mesh.faces.size()}}},
-      {"method", name(result.map.method)},
-      {"notes", notes},
-      {"output", result.output.empty() ? ordered_json() : ordered_json(result.output)},
-      {"quality", quality_json(result.quality)},
-      {"stretch", stretch_json(result)},
-      {"timings",
-       {{"map", result.map_seconds}, {"judge", result.judge_seconds}, {"relabellings", result.repeat_seconds}}}};
+  Object all = opening("cowgpu.map.v1", command);
+  all.add({{"mesh", members(result.surface.closed().mesh())},
+           {"method", name(result.map.method)},
+           {"notes", notes},
+           {"output", known_text(result.output)},
+           {"quality", members(result.quality)},
+           {"stretch", stretch(result)},
+           {"timings", Object{{"map", result.map_seconds},
+                              {"judge", result.judge_seconds},
+                              {"relabellings", result.repeat_seconds}}}});
   if (result.flow) {
     const FlowMapReport& flow = *result.flow;
-    all["flow"] = {{"time", flow.time},
-                   {"time_choice", flow.time_choice},
-                   {"origin", {flow.origin.x(), flow.origin.y(), flow.origin.z()}},
-                   {"star_shape", star_shape_json(flow.star)},
-                   {"points", flow_points_json(flow.points)}};
+    all.add("flow", Object{{"time", flow.time},
+                           {"time_choice", flow.time_choice},
+                           {"origin", flow.origin},
+                           {"star_shape", members(flow.star)},
+                           {"points", members(flow.points)}});
   }
-  sink(json_text(all) + "\n");
+  return all;
 }
 
 } // namespace cowgpu

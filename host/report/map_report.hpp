@@ -38,7 +38,7 @@ struct MapResult {
 /// For people: the mesh, the method and its notes, a table of figures, the same in sentences.
 void write_screen(const MapResult& result, const Sink& sink);
 
-/// As JSON after data/schemas/cowgpu.map.v1.json; infinite numbers are null.
-void write_json(const MapResult& result, const std::vector<std::string>& command, const Sink& sink);
+/// After data/schemas/cowgpu.map.v1.json.
+Object document(const MapResult& result, const std::vector<std::string>& command);
 
 } // namespace cowgpu

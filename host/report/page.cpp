@@ -2,9 +2,10 @@
 
 #include "host/coefficient_set.hpp"
 #include "host/error.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/file.hpp"
 #include "host/io/result_json.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/report/order_names.hpp"
 #include "host/spectrum/power.hpp"
 
@@ -204,12 +205,9 @@ std::string page_data(const PageDocument& document) {
   const json& result = *document.result;
   const std::string name = "the result";
   const json& expansions = result_json::member(name, result, "expansions");
-  ordered_json head = {{"schema", "cowgpu.page.v1"},
-                       {"program", program_json()},
-                       {"command", document.command},
-                       {"created", utc_now()},
-                       {"notes", document.notes},
-                       {"grid", {{"rings", document.grid.rings}, {"ring_length", document.grid.ring_length}}}};
+  ordered_json head = ordered_json::parse(json_text(opening("cowgpu.page.v1", document.command)));
+  head["notes"] = document.notes;
+  head["grid"] = {{"rings", document.grid.rings}, {"ring_length", document.grid.ring_length}};
   json rest = json::object();
   for (const auto& [key, value] : result.items())
     if (key != "expansions") rest[key] = value;

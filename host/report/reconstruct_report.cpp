@@ -1,20 +1,17 @@
 #include "host/report/reconstruct_report.hpp"
 
 #include "host/mesh/tensors.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/report/order_names.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace cowgpu {
 namespace {
-
-using nlohmann::ordered_json;
 
 const char* fields_name(SurfaceFields fields) {
   return fields == SurfaceFields::xyz ? "xyz" : "f";
@@ -47,47 +44,35 @@ int coordinate_digits(double size) {
   return std::clamp(3 - int(std::floor(std::log10(size))), 0, 12);
 }
 
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+Object members(const OneWayDistance& way) {
+  return {{"rms", way.rms}, {"largest", way.largest}, {"where", way.where}};
 }
 
-ordered_json json_of(const Vec3& v) {
-  return {number(v.x()), number(v.y()), number(v.z())};
+Object members(const SurfaceMeasures& m) {
+  return {{"volume", m.volume},
+          {"centre_of_mass", m.centre_of_mass},
+          {"inertia", m.inertia},
+          {"principal_moments", principal_moments(m.inertia)}};
 }
 
-ordered_json json_of(const Eigen::Matrix3d& m) {
-  ordered_json rows = ordered_json::array();
-  for (int row = 0; row < 3; ++row) rows.push_back(json_of(Vec3(m.row(row))));
-  return rows;
+Object members(const SurfaceDistance& distance) {
+  return {{"rms", distance.rms()},
+          {"largest", distance.largest()},
+          {"from_surface", members(distance.forth)},
+          {"from_mesh", members(distance.back)}};
 }
 
-ordered_json json_of(const OneWayDistance& way) {
-  return {{"rms", way.rms}, {"largest", way.largest}, {"where", json_of(way.where)}};
-}
-
-ordered_json measures_json(const SurfaceMeasures& m) {
-  return {{"volume", number(m.volume)},
-          {"centre_of_mass", json_of(m.centre_of_mass)},
-          {"inertia", json_of(m.inertia)},
-          {"principal_moments", json_of(principal_moments(m.inertia))}};
-}
-
-ordered_json order_json(const ReconstructReport& report, const RebuiltOrder& order) {
-  ordered_json row = {{"order", order.order},
-                      {"name", order_name(order.order)},
-                      {"description", describe_order(report.expansion, report.fields, order.order)}};
-  row.update(measures_json(order.measures));
-  row["distance"] = nullptr;
-  if (order.distance)
-    row["distance"] = {{"rms", order.distance->rms()},
-                       {"largest", order.distance->largest()},
-                       {"from_surface", json_of(order.distance->forth)},
-                       {"from_mesh", json_of(order.distance->back)}};
-  row["resolution"] = order.resolution;
-  row["vertices"] = order.vertices;
-  row["faces"] = order.faces;
-  row["output"] = order.output.empty() ? ordered_json() : ordered_json(order.output);
-  row["seconds"] = order.seconds;
+Object order_members(const ReconstructReport& report, const RebuiltOrder& order) {
+  Object row = {{"order", order.order},
+                {"name", order_name(order.order)},
+                {"description", describe_order(report.expansion, report.fields, order.order)}};
+  row.add(members(order.measures));
+  row.add({{"distance", order.distance ? Value(members(*order.distance)) : Value()},
+           {"resolution", order.resolution},
+           {"vertices", order.vertices},
+           {"faces", order.faces},
+           {"output", known_text(order.output)},
+           {"seconds", order.seconds}});
   return row;
 }
 
@@ -153,44 +138,37 @@ void write_screen(const ReconstructReport& report, const Sink& sink) {
   if (report.body) row("mesh", "", mesh_measures(report), "");
 }
 
-void write_json(const ReconstructReport& report, const Sink& sink) {
+Object document(const ReconstructReport& report) {
   const SurfaceExpansion& expansion = report.expansion;
-  ordered_json mesh = {{"name", report.mesh}, {"sha256", report.mesh_hash}};
-  ordered_json truth;
+  Value truth, samples;
   if (report.body) {
-    truth = {{"name", report.body->surface.mesh().name},
-             {"sha256", report.body->surface.mesh().sha256},
-             {"vertices", report.body->surface.vertices().size()},
-             {"faces", report.body->surface.faces().size()}};
-    truth.update(measures_json(mesh_measures(report)));
+    Object mesh = members(report.body->surface.mesh());
+    mesh.add(members(mesh_measures(report)));
+    truth = mesh;
+    samples = report.samples;
   }
-  ordered_json orders = ordered_json::array();
-  for (const RebuiltOrder& order : report.orders) orders.push_back(order_json(report, order));
-  const ordered_json all = {
-      {"schema", "cowgpu.reconstruct.v1"},
-      {"program", program_json()},
-      {"command", report.command},
-      {"created", report.created},
-      {"input", report.input},
-      {"device", device_json(report.device)},
-      {"notes", report.notes},
-      {"expansion",
-       {{"name", report.name},
-        {"mesh", mesh},
-        {"map", report.map_method},
-        {"recipe", report.recipe},
-        {"lmax", expansion.coefficients.lmax},
-        {"origin", json_of(expansion.origin)},
-        {"dphi", expansion.signed_dphi ? "signed" : "absolute"},
-        {"spherical_radius", spherical_radius(expansion)}}},
-      {"fields", fields_name(report.fields)},
-      {"units", "lengths in the mesh's unit, coordinates and axes the mesh's; density 1; inertia about the expansion's "
-                "origin"},
-      {"mesh", truth},
-      {"samples", report.body ? ordered_json(report.samples) : ordered_json()},
-      {"orders", orders},
-      {"timings", {{"source", report.source_seconds}, {"total", report.total_seconds}}}};
-  sink(json_text(all) + "\n");
+  List orders;
+  for (const RebuiltOrder& order : report.orders) orders.push_back(order_members(report, order));
+  Object all = opening("cowgpu.reconstruct.v1", report.command, report.created);
+  all.add({{"input", report.input},
+           {"device", members(report.device)},
+           {"notes", report.notes},
+           {"expansion", Object{{"name", report.name},
+                                {"mesh", Object{{"name", report.mesh}, {"sha256", report.mesh_hash}}},
+                                {"map", report.map_method},
+                                {"recipe", report.recipe},
+                                {"lmax", expansion.coefficients.lmax},
+                                {"origin", expansion.origin},
+                                {"dphi", expansion.signed_dphi ? "signed" : "absolute"},
+                                {"spherical_radius", spherical_radius(expansion)}}},
+           {"fields", fields_name(report.fields)},
+           {"units", "lengths in the mesh's unit, coordinates and axes the mesh's; density 1; inertia about the "
+                     "expansion's origin"},
+           {"mesh", truth},
+           {"samples", samples},
+           {"orders", orders},
+           {"timings", Object{{"source", report.source_seconds}, {"total", report.total_seconds}}}});
+  return all;
 }
 
 } // namespace cowgpu

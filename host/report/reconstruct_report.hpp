@@ -47,7 +47,7 @@ std::vector<std::string> order_facts(const ReconstructReport& report, int order)
 /// For people: what was rebuilt from what, then a table by order.
 void write_screen(const ReconstructReport& report, const Sink& sink);
 
-/// As JSON after data/schemas/cowgpu.reconstruct.v1.json; what is not finite is null.
-void write_json(const ReconstructReport& report, const Sink& sink);
+/// After data/schemas/cowgpu.reconstruct.v1.json.
+Object document(const ReconstructReport& report);
 
 } // namespace cowgpu

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/device_facts.hpp"
+#include "host/document.hpp"
 #include "host/mass/verify.hpp"
 #include "host/mesh/body.hpp"
 #include "host/mesh/tensors.hpp"
@@ -9,9 +10,7 @@
 #include "host/report/surface_result.hpp"
 #include "host/run_report.hpp"
 
-#include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace cowgpu {
@@ -43,9 +42,6 @@ struct ExpandResult {
   std::vector<SurfaceResult> surfaces;
 };
 
-/// Where text goes: a stream or a file.
-using Sink = std::function<void(std::string_view)>;
-
 /// One line: name, hash, triangles. It opens every result.
 std::string mesh_line(const RawMesh& mesh);
 
@@ -56,10 +52,10 @@ std::string device_line(const DeviceFacts& device);
 /// units, not conjugated, in two columns like the paper's first table), volume, centre of mass, tensors.
 void write_screen(const ExpandResult& result, const Sink& sink);
 
-/// The result as JSON after data/schemas/cowgpu.result.v1.json, streamed; numbers read back as the same doubles.
-void write_json(const ExpandResult& result, const Sink& sink);
+/// The result after data/schemas/cowgpu.result.v1.json. It refers to the coefficients of `result`, which must live as long.
+Object document(const ExpandResult& result);
 
-/// Bytes that write_json() will write for the mass multipoles, to about ten per cent.
+/// Bytes of the mass multipoles in that as JSON, to about ten per cent.
 std::uint64_t json_bytes(int lmax);
 
 /// The result as CSV: comment lines with conventions and provenance, a line of column names, then a row for each l and

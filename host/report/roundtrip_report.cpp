@@ -1,22 +1,18 @@
 #include "host/report/roundtrip_report.hpp"
 
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu {
 namespace {
 
-nlohmann::ordered_json stage_json(const TransformReport& report) {
-  nlohmann::ordered_json kernels = nlohmann::ordered_json::array();
-  for (const KernelTime& k : report.kernels)
-    kernels.push_back({{"kernel", k.kernel}, {"dispatches", k.dispatches}, {"seconds", k.seconds}});
+Object members(const TransformReport& report) {
   return {{"legendre_seconds", report.legendre_seconds},
           {"fourier_seconds", report.fourier_seconds},
           {"legendre_flops", report.legendre_flops},
           {"fourier_flops", report.fourier_flops},
-          {"kernels", kernels}};
+          {"kernels", entries(report.kernels)}};
 }
 
 std::string memory_text(const MemoryNeed& need) {
@@ -56,33 +52,28 @@ void write_plan(const RoundtripResult& o, const Sink& sink) {
   sink("memory: " + memory_text(o.memory) + "\n");
 }
 
-void write_json(const RoundtripResult& o, const Sink& sink) {
-  const nlohmann::ordered_json all = {
-      {"schema", "cowgpu.roundtrip.v1"},
-      {"program", program_json()},
-      {"command", o.command},
-      {"created", o.created},
-      {"device", device_json(o.device)},
-      {"notes", o.notes},
-      {"grid", {{"kind", name(o.grid.kind)}, {"rings", o.grid.rings}, {"ring_length", o.grid.ring_length}}},
-      {"lmax", o.request.lmax},
-      {"fields", o.request.fields},
-      {"seed", o.request.seed},
-      {"runs", o.request.runs},
-      {"max_error", o.error.max},
-      {"rms_error", o.error.rms},
-      {"bound", o.bound},
-      {"passed", o.passed()},
-      {"setup_seconds", o.setup_seconds},
-      {"synthesis_seconds", o.synthesis.seconds},
-      {"analysis_seconds", o.analysis.seconds},
-      {"synthesis", stage_json(o.synthesis)},
-      {"analysis", stage_json(o.analysis)},
-      {"memory",
-       {{"host_bytes", o.memory.host},
-        {"device_bytes", o.memory.device},
-        {"peak_resident_bytes", o.peak_resident_bytes}}}};
-  sink(json_text(all) + "\n");
+Object document(const RoundtripResult& o) {
+  Object all = opening("cowgpu.roundtrip.v1", o.command, o.created);
+  all.add({{"device", members(o.device)},
+           {"notes", o.notes},
+           {"grid", Object{{"kind", name(o.grid.kind)}, {"rings", o.grid.rings}, {"ring_length", o.grid.ring_length}}},
+           {"lmax", o.request.lmax},
+           {"fields", o.request.fields},
+           {"seed", o.request.seed},
+           {"runs", o.request.runs},
+           {"max_error", o.error.max},
+           {"rms_error", o.error.rms},
+           {"bound", o.bound},
+           {"passed", o.passed()},
+           {"setup_seconds", o.setup_seconds},
+           {"synthesis_seconds", o.synthesis.seconds},
+           {"analysis_seconds", o.analysis.seconds},
+           {"synthesis", members(o.synthesis)},
+           {"analysis", members(o.analysis)},
+           {"memory", Object{{"host_bytes", o.memory.host},
+                             {"device_bytes", o.memory.device},
+                             {"peak_resident_bytes", o.peak_resident_bytes}}}});
+  return all;
 }
 
 } // namespace cowgpu

@@ -44,7 +44,7 @@ void write_screen(const RoundtripResult& result, const Sink& sink);
 /// For people, before the work: grid, device, memory.
 void write_plan(const RoundtripResult& result, const Sink& sink);
 
-/// As JSON after data/schemas/cowgpu.roundtrip.v1.json.
-void write_json(const RoundtripResult& result, const Sink& sink);
+/// After data/schemas/cowgpu.roundtrip.v1.json.
+Object document(const RoundtripResult& result);
 
 } // namespace cowgpu

@@ -1,10 +1,9 @@
 #include "host/report/spectrum_report.hpp"
 
 #include "host/io/shown.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -73,21 +72,18 @@ void write_screen(const SpectrumResult& result, const Sink& sink) {
   write_column(*result.cross, "X_l", "integral of f g over the unit sphere", sink);
 }
 
-void write_json(const SpectrumResult& result, const Sink& sink) {
-  nlohmann::ordered_json fields = nlohmann::ordered_json::array();
+Object document(const SpectrumResult& result) {
+  List fields;
   for (const PowerSpectrum& field : result.fields)
-    fields.push_back({{"name", field.name}, {"total", field.total()}, {"power", field.power}});
-  nlohmann::ordered_json all = {{"schema", "cowgpu.spectrum.v1"},
-                                {"program", program_json()},
-                                {"command", result.command},
-                                {"created", result.created},
-                                {"input", result.input},
-                                {"notes", result.notes},
-                                {"lmax", result.lmax},
-                                {"harmonics", "orthonormal"},
-                                {"fields", fields}};
-  if (result.cross) all["cross"] = {{"total", result.cross->total()}, {"power", result.cross->power}};
-  sink(json_text(all) + "\n");
+    fields.push_back(Object{{"name", field.name}, {"total", field.total()}, {"power", field.power}});
+  Object all = opening("cowgpu.spectrum.v1", result.command, result.created);
+  all.add({{"input", result.input},
+           {"notes", result.notes},
+           {"lmax", result.lmax},
+           {"harmonics", "orthonormal"},
+           {"fields", fields}});
+  if (result.cross) all.add("cross", Object{{"total", result.cross->total()}, {"power", result.cross->power}});
+  return all;
 }
 
 } // namespace cowgpu

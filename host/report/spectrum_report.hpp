@@ -30,7 +30,7 @@ struct SpectrumResult {
 /// For people: a table of each field, with bars on a logarithmic scale.
 void write_screen(const SpectrumResult& result, const Sink& sink);
 
-/// As JSON after data/schemas/cowgpu.spectrum.v1.json.
-void write_json(const SpectrumResult& result, const Sink& sink);
+/// After data/schemas/cowgpu.spectrum.v1.json.
+Object document(const SpectrumResult& result);
 
 } // namespace cowgpu

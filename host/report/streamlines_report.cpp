@@ -1,20 +1,18 @@
 #include "host/report/streamlines_report.hpp"
 
+#include "host/report/document_parts.hpp"
 #include "host/report/flow_result.hpp"
-#include "host/report/json_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu {
 
-nlohmann::ordered_json streamlines_json(const StreamlinesResult& result, const std::vector<std::string>& command) {
-  nlohmann::ordered_json all = {
-      {"schema", "cowgpu.streamlines.v1"}, {"program", program_json()}, {"command", command}, {"created", utc_now()}};
-  all.update(streamlines_json(result.table));
-  all["device"] = device_json(result.device);
-  all["notes"] = result.notes;
-  all["timings"] = {{"read", result.read_seconds}, {"flow", result.flow_seconds}};
+Object document(const StreamlinesResult& result, const std::vector<std::string>& command) {
+  Object all = opening("cowgpu.streamlines.v1", command);
+  all.add(members(result.table));
+  all.add({{"device", members(result.device)},
+           {"notes", result.notes},
+           {"timings", Object{{"read", result.read_seconds}, {"flow", result.flow_seconds}}}});
   return all;
 }
 

@@ -5,8 +5,6 @@
 #include "host/io/streamline_file.hpp"
 #include "host/report/result.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <vector>
 
@@ -22,7 +20,7 @@ struct StreamlinesResult {
 };
 
 /// After data/schemas/cowgpu.streamlines.v1.json.
-nlohmann::ordered_json streamlines_json(const StreamlinesResult& result, const std::vector<std::string>& command);
+Object document(const StreamlinesResult& result, const std::vector<std::string>& command);
 
 /// Lines for the screen; `plane` is what the user calls the plane.
 void write_streamlines(const StreamlinesResult& result, const std::string& plane, const Sink& sink);

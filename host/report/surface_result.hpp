@@ -1,13 +1,13 @@
 // One of the surface expansions in a result.
 #pragma once
 
+#include "host/document.hpp"
 #include "host/map/quality.hpp"
 #include "host/paper/surface_tables.hpp"
 #include "host/report/flow_result.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,13 +43,14 @@ const SurfaceExpansion& converged_expansion(const SurfaceResult& result);
 /// The largest uncertainty of that among degrees 0 to 3, by field: the estimate of aliasing where there is no flow.
 std::array<double, 6> converged_within(const SurfaceResult& result);
 
-/// The member of `expansions` as text after data/schemas/cowgpu.result.v1.json, streamed.
-void write_surface_json(const SurfaceResult& result, const std::function<void(std::string_view)>& sink);
+/// The member of `expansions` after data/schemas/cowgpu.result.v1.json. It refers to the coefficients of `result`, which must
+/// live as long.
+Object members(const SurfaceResult& result);
 
-/// Bytes that writes, to about ten per cent.
+/// Bytes of that as JSON, to about ten per cent.
 std::uint64_t surface_json_bytes(int lmax);
 
 /// For people: the map, its flaws, the leading coefficients to degree 3, and the paper's beside them where it has them.
-void write_surface_screen(const SurfaceResult& result, const std::function<void(std::string_view)>& sink);
+void write_surface_screen(const SurfaceResult& result, const Sink& sink);
 
 } // namespace cowgpu

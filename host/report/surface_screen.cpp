@@ -51,7 +51,7 @@ std::string verdict_text(const std::array<double, 3>& distances, const std::arra
                      farther);
 }
 
-void write_beside_paper(const SurfaceResult& result, const std::function<void(std::string_view)>& sink) {
+void write_beside_paper(const SurfaceResult& result, const Sink& sink) {
   const SurfaceExpansion &expansion = result.expansion, &converged = converged_expansion(result);
   const auto table = paper_table(result);
   sink(fmt::format(
@@ -118,7 +118,7 @@ std::array<double, 6> converged_within(const SurfaceResult& result) {
       result.flow && result.flow->converged ? result.flow->converged->uncertainty : result.report.aliasing, 3);
 }
 
-void write_surface_screen(const SurfaceResult& result, const std::function<void(std::string_view)>& sink) {
+void write_surface_screen(const SurfaceResult& result, const Sink& sink) {
   const SurfaceExpansion& expansion = result.expansion;
   const SphereCoefficients& a = expansion.coefficients;
   const Vec3& o = expansion.origin;

@@ -1,10 +1,9 @@
 #include "host/report/transform_report.hpp"
 
 #include "host/io/coefficient_metadata.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace cowgpu {
 namespace {
@@ -42,32 +41,27 @@ void write_screen(const TransformRun& run, const Sink& sink) {
                    run.setup_seconds, run.report.seconds, run.write_seconds));
 }
 
-void write_json(const TransformRun& run, const Sink& sink) {
+Object document(const TransformRun& run) {
   const TransformPlan& plan = run.plan;
-  const nlohmann::ordered_json all = {{"schema", "cowgpu.transform.v1"},
-                                      {"program", program_json()},
-                                      {"command", run.command},
-                                      {"created", run.created},
-                                      {"direction", plan.direction},
-                                      {"input", run.input},
-                                      {"output", run.output},
-                                      {"grid",
-                                       {{"kind", name(plan.grid.kind)},
-                                        {"rings", plan.grid.rings},
-                                        {"ring_length", plan.grid.ring_length},
-                                        {"lmax", plan.grid.lmax}}},
-                                      {"lmax", plan.lmax},
-                                      {"fields", plan.names},
-                                      {"normalisation", name(plan.convention.normalisation)},
-                                      {"phase", name(plan.convention.phase)},
-                                      {"device", device_json(plan.device)},
-                                      {"notes", plan.notes},
-                                      {"timings",
-                                       {{"read", run.read_seconds},
-                                        {"setup", run.setup_seconds},
-                                        {"transform", run.report.seconds},
-                                        {"write", run.write_seconds}}}};
-  sink(json_text(all) + "\n");
+  Object all = opening("cowgpu.transform.v1", run.command, run.created);
+  all.add({{"direction", plan.direction},
+           {"input", run.input},
+           {"output", run.output},
+           {"grid", Object{{"kind", name(plan.grid.kind)},
+                           {"rings", plan.grid.rings},
+                           {"ring_length", plan.grid.ring_length},
+                           {"lmax", plan.grid.lmax}}},
+           {"lmax", plan.lmax},
+           {"fields", plan.names},
+           {"normalisation", name(plan.convention.normalisation)},
+           {"phase", name(plan.convention.phase)},
+           {"device", members(plan.device)},
+           {"notes", plan.notes},
+           {"timings", Object{{"read", run.read_seconds},
+                              {"setup", run.setup_seconds},
+                              {"transform", run.report.seconds},
+                              {"write", run.write_seconds}}}});
+  return all;
 }
 
 } // namespace cowgpu

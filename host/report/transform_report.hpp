@@ -38,7 +38,7 @@ void write_plan(const TransformPlan& plan, const Sink& sink);
 /// For people: what was computed, on what, how long.
 void write_screen(const TransformRun& run, const Sink& sink);
 
-/// As JSON after data/schemas/cowgpu.transform.v1.json.
-void write_json(const TransformRun& run, const Sink& sink);
+/// After data/schemas/cowgpu.transform.v1.json.
+Object document(const TransformRun& run);
 
 } // namespace cowgpu

@@ -1,6 +1,7 @@
 #include "host/reproduce/report.hpp"
 
-#include "host/report/json_parts.hpp"
+#include "host/io/result_json.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/version.hpp"
 
 #include <fmt/format.h>
@@ -12,11 +13,9 @@
 namespace cowgpu::reproduce {
 namespace {
 
-using nlohmann::ordered_json;
-
-// One number or two, as JSON.
-ordered_json parts_json(const std::vector<double>& parts) {
-  if (parts.empty()) return nullptr;
+// One number or two.
+Value value(const std::vector<double>& parts) {
+  if (parts.empty()) return {};
   if (parts.size() == 1) return parts[0];
   return parts;
 }
@@ -149,46 +148,45 @@ Tally tally(const std::vector<Row>& rows) {
   return counts;
 }
 
-ordered_json reproduce_json(const Reproduction& all) {
-  ordered_json rows = ordered_json::array(), stages = ordered_json::array(), figures = ordered_json::array();
+Object document(const Reproduction& all) {
+  List rows, stages, figures, errata;
   for (const Row& row : all.rows)
-    rows.push_back({{"table", row.table},
-                    {"item", row.item},
-                    {"printed", row.printed},
-                    {"paper", parts_json(row.paper)},
-                    {"ours", parts_json(row.ours)},
-                    {"difference", row.difference ? ordered_json(*row.difference) : ordered_json()},
-                    {"verdict", name(row.verdict)},
-                    {"reason", row.reason},
-                    {"source", row.source}});
+    rows.push_back(Object{{"table", row.table},
+                          {"item", row.item},
+                          {"printed", row.printed},
+                          {"paper", value(row.paper)},
+                          {"ours", value(row.ours)},
+                          {"difference", row.difference},
+                          {"verdict", name(row.verdict)},
+                          {"reason", row.reason},
+                          {"source", row.source}});
   for (const Ran& ran : all.stages)
-    stages.push_back({{"name", ran.stage.name},
-                      {"what", ran.stage.what},
-                      {"command", ran.stage.arguments},
-                      {"seconds", ran.seconds},
-                      {"exit_code", ran.exit_code},
-                      {"earlier_run", !ran.again},
-                      {"message", ran.message}});
+    stages.push_back(Object{{"name", ran.stage.name},
+                            {"what", ran.stage.what},
+                            {"command", ran.stage.arguments},
+                            {"seconds", ran.seconds},
+                            {"exit_code", ran.exit_code},
+                            {"earlier_run", !ran.again},
+                            {"message", ran.message}});
   for (const Figure& figure : all.figures)
-    figures.push_back({{"file", figure.file}, {"title", figure.title}, {"caption", figure.caption}});
+    figures.push_back(Object{{"file", figure.file}, {"title", figure.title}, {"caption", figure.caption}});
+  if (all.errata.is_object())
+    for (const nlohmann::json& erratum : all.errata.value("errata", nlohmann::json::array()))
+      errata.push_back(result_json::value(erratum));
   const Tally counts = tally(all.rows);
-  return {{"schema", "cowgpu.reproduce.v1"},
-          {"program", program_json()},
-          {"command", all.command},
-          {"created", all.created},
-          {"mesh", {{"name", all.mesh}, {"sha256", all.mesh_hash}, {"papers", all.papers_mesh}}},
-          {"device", all.device},
-          {"seconds", all.seconds},
-          {"counts",
-           {{"agrees", counts.agrees},
-            {"differs", counts.differs},
-            {"not_compared", counts.not_compared},
-            {"not_computed", counts.not_computed}}},
-          {"rows", rows},
-          {"figures", figures},
-          {"errata", all.errata.is_object() ? ordered_json(all.errata.value("errata", nlohmann::json::array()))
-                                            : ordered_json::array()},
-          {"stages", stages}};
+  Object document = opening("cowgpu.reproduce.v1", all.command, all.created);
+  document.add({{"mesh", Object{{"name", all.mesh}, {"sha256", all.mesh_hash}, {"papers", all.papers_mesh}}},
+                {"device", result_json::value(all.device)},
+                {"seconds", all.seconds},
+                {"counts", Object{{"agrees", counts.agrees},
+                                  {"differs", counts.differs},
+                                  {"not_compared", counts.not_compared},
+                                  {"not_computed", counts.not_computed}}},
+                {"rows", rows},
+                {"figures", figures},
+                {"errata", errata},
+                {"stages", stages}});
+  return document;
 }
 
 std::string reproduce_markdown(const Reproduction& all) {

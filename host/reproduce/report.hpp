@@ -1,6 +1,7 @@
 // What `reproduce` found, as a document and as JSON.
 #pragma once
 
+#include "host/document.hpp"
 #include "host/reproduce/row.hpp"
 #include "host/reproduce/stage.hpp"
 
@@ -25,9 +26,9 @@ struct Reproduction {
   std::string created;
   std::string mesh, mesh_hash;
   bool papers_mesh = true;
-  bool asked_for = false;        ///< the user named this mesh; else it stands in for the paper's, which is missing
-  nlohmann::ordered_json device; ///< as in the result of `expand`, or null
-  double seconds = 0;            ///< time of all stages, whenever they ran
+  bool asked_for = false; ///< the user named this mesh; else it stands in for the paper's, which is missing
+  nlohmann::json device;  ///< as in the result of `expand`, or null
+  double seconds = 0;     ///< time of all stages, whenever they ran
   std::vector<Row> rows;
   std::vector<Ran> stages;
   std::vector<Figure> figures; ///< those that are there
@@ -41,7 +42,7 @@ struct Tally {
 Tally tally(const std::vector<Row>& rows);
 
 /// The document cowgpu.reproduce.v1.
-nlohmann::ordered_json reproduce_json(const Reproduction& all);
+Object document(const Reproduction& all);
 
 /// The same to read, in Markdown, the pictures linked.
 std::string reproduce_markdown(const Reproduction& all);

@@ -2,6 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/file.hpp"
 #include "host/io/sha256.hpp"
 
@@ -53,11 +54,11 @@ std::optional<Done> State::finished(const Stage& stage, const std::string& key) 
 void State::finish(const Stage& stage, const std::string& key, double seconds) {
   std::erase_if(done_, [&](const auto& entry) { return entry.first == stage.name; });
   done_.emplace_back(stage.name, Done{key, seconds, hashes(stage)});
-  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  Object stages;
   for (const auto& [name, done] : done_)
-    stages[name] = {{"key", done.key}, {"seconds", done.seconds}, {"sha256", done.hashes}};
+    stages.add(name, Object{{"key", done.key}, {"seconds", done.seconds}, {"sha256", done.hashes}});
   AtomicFile file(folder_ / state_file);
-  file.write(nlohmann::ordered_json{{"schema", "cowgpu.stages.v1"}, {"stages", stages}}.dump(1) + "\n");
+  file.write(json_text({{"schema", "cowgpu.stages.v1"}, {"stages", stages}}));
   file.commit();
 }
 

@@ -5,7 +5,7 @@
 #include "host/io/coefficient_content.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/length_unit.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/spectrum/convert.hpp"
 
 namespace cowgpu {

@@ -4,7 +4,7 @@
 #include "host/error.hpp"
 #include "host/mass/translate.hpp"
 #include "host/plan/moments.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 

@@ -3,7 +3,7 @@
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/surface_file.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 

@@ -3,10 +3,11 @@
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/document_json.hpp"
 #include "host/io/file.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/io/result_json.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/reproduce/tables.hpp"
 
 #include <fmt/format.h>
@@ -195,7 +196,7 @@ Reproduction reproduce_paper(const ReproduceRequest& request, Monitor& monitor) 
   if (const auto errata = found.find("errata.json"); errata != found.end()) all.errata = errata->second;
   for (const Figure& figure : plan.figures)
     if (std::error_code none; fs::exists(folder / figure.file, none)) all.figures.push_back(figure);
-  write_whole(folder / "reproduce.json", json_text(reproduce_json(all)) + "\n");
+  write_whole(folder / "reproduce.json", json_text(document(all)));
   write_whole(folder / "reproduce.md", reproduce_markdown(all));
   return all;
 }

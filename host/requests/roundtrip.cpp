@@ -1,7 +1,7 @@
 #include "host/requests/roundtrip.hpp"
 
 #include "host/clock.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 

@@ -3,7 +3,7 @@
 #include "host/error.hpp"
 #include "host/io/coefficient_file.hpp"
 #include "host/io/shown.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/spectrum/power.hpp"
 
 #include <fmt/format.h>
@@ -14,9 +14,9 @@
 namespace cowgpu {
 
 SpectrumResult spectrum(const SpectrumRequest& request) {
-  CoefficientFile file = read_coefficients(request.input, request.metres);
-  const SphereCoefficients& a = file.coefficients;
   const std::string input = request.input.string();
+  CoefficientSet set = read_fields(request.input, request.metres);
+  const SphereCoefficients a = field_coefficients(set, input);
   if (request.cross && a.fields != 2)
     throw Error(Fault::bad_argument, fmt::format("--cross takes a file of two fields; {} has {}", input, a.fields));
   SpectrumResult result;
@@ -24,7 +24,7 @@ SpectrumResult spectrum(const SpectrumRequest& request) {
   result.input = input;
   result.lmax = a.lmax;
   for (int f = 0; f < a.fields; ++f) {
-    const std::string& name = file.names[std::size_t(f)];
+    const std::string& name = set.names[std::size_t(f)];
     result.fields.push_back({!name.empty()   ? name
                              : a.fields == 1 ? "field"
                                              : fmt::format("field_{}", f + 1),
@@ -37,7 +37,7 @@ SpectrumResult spectrum(const SpectrumRequest& request) {
                               "scale the field down",
                               input, shown(field.name)));
   if (request.cross) result.cross = {result.fields[0].name + " and " + result.fields[1].name, cross_power(a, 0, a, 1)};
-  result.notes = std::move(file.notes);
+  result.notes = std::move(set.notes);
   return result;
 }
 

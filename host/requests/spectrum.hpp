@@ -14,7 +14,7 @@ struct SpectrumRequest {
   bool cross = false;           ///< of a file of two fields: their cross spectrum too
 };
 
-/// The caller fills in `command`. Throws what read_coefficients() throws; Error(bad_argument) for a cross spectrum of
+/// The caller fills in `command`. Throws what read_fields() and field_coefficients() throw; Error(bad_argument) for a cross spectrum of
 /// other than two fields, and file_format for squares that overflow doubles.
 SpectrumResult spectrum(const SpectrumRequest& request);
 

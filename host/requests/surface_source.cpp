@@ -37,7 +37,7 @@ ExpansionChoice expansion_choice(const SurfaceChoice& choice, int largest_order)
 }
 
 SurfaceSource from_file(const SurfaceChoice& choice, Monitor& monitor) {
-  SurfaceSource source{read_surface(choice.input, choice.of), {}, {}};
+  SurfaceSource source{read_surface(choice.input, choice.of)};
   if (choice.mesh.empty()) return source;
   source.body = body_of(choice.mesh, source.placement);
   const RawMesh& mesh = source.body->surface.mesh();

@@ -25,8 +25,7 @@ inline constexpr int default_lmax = 64;
 
 /// An expansion as a file would hold it, whether it comes from one or not.
 struct SurfaceSource : SurfaceFile {
-  std::optional<Body> body; ///< where the mesh is known; density 1
-  std::vector<std::string> notes;
+  std::optional<Body> body = {}; ///< where the mesh is known; density 1
 };
 
 /// Reads a result file (`of` "": read_surface()'s choice) and the mesh beside it, or reads a mesh, maps it (`of` "":

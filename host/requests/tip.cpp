@@ -2,19 +2,14 @@
 
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
-#include "host/io/coefficient_file.hpp"
-#include "host/io/coefficient_metadata.hpp"
-#include "host/io/result_json.hpp"
 #include "host/io/surface_file.hpp"
 #include "host/requests/expand_surfaces.hpp"
 #include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
 #include "host/requests/surface_source.hpp"
-#include "host/spectrum/convert.hpp"
 #include "host/spectrum/expand_surface.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -40,57 +35,6 @@ int resolution_of(const TipRequest& request, int order) {
 
 int largest_order(const TipRequest& request) {
   return request.orders.empty() ? 0 : *std::max_element(request.orders.begin(), request.orders.end());
-}
-
-[[noreturn]] void not_a_surface(const std::string& file, const std::string& what) {
-  throw Error(
-      Fault::file_format,
-      fmt::format("{} holds {}, and tipping needs coefficients of a surface: fields f_r, f_dtheta, f_dphi, x, y, "
-                  "z, as `cowgpu expand --of stretch -o FILE` writes them; or take the mesh",
-                  file, what));
-}
-
-// Any format: the columns of `cowgpu expand -o FILE.csv` are named after their expansion.
-CoefficientSet read_surface_set(const std::string& file, const std::string& of) {
-  CoefficientSet set = read_coefficient_set(file, of);
-  if (!of.empty() || set.kind != CoefficientKind::field) return set;
-  std::vector<std::string> there;
-  for (const std::string& field : set.names)
-    if (field.ends_with("_f_r")) there.push_back(field.substr(0, field.size() - 4));
-  if (there.empty()) return set;
-  const bool stretch = std::find(there.begin(), there.end(), "stretch") != there.end();
-  if (there.size() > 1 && !stretch)
-    throw Error(Fault::bad_argument, fmt::format("{} has several expansions of a surface: {}; choose one with --of",
-                                                 file, fmt::join(there, ", ")));
-  return read_coefficient_set(file, stretch ? "stretch" : there.front());
-}
-
-SurfaceSource source_of_set(const std::string& file, const std::string& of, bool& metric) {
-  const CoefficientSet set = read_surface_set(file, of);
-  if (set.kind != CoefficientKind::field)
-    not_a_surface(file, fmt::format("coefficients of a mass ({})", name(set.kind)));
-  if (set.names != std::vector<std::string>(surface_field_names.begin(), surface_field_names.end()))
-    not_a_surface(file, fmt::format("coefficients of {} field{}{}", set.fields, set.fields == 1 ? "" : "s",
-                                    set.names[0].empty() ? "" : fmt::format(" ({} ...)", set.names[0])));
-  SurfaceSource source;
-  source.name = of.empty() ? "surface" : of;
-  source.expansion.coefficients = orthonormal(set);
-  source.expansion.origin = set.origin.value_or(Vec3::Zero());
-  source.expansion.mean_dtheta = remark_number(set, file, "removed_mean_f_dtheta", 0);
-  source.expansion.mean_dphi = remark_number(set, file, "removed_mean_f_dphi", 0);
-  source.mesh = set.provenance.mesh;
-  source.notes = set.notes;
-  if (!(spherical_radius(source.expansion) > 0))
-    throw Error(Fault::file_format,
-                fmt::format("{}: the coefficient (0, 0) of f_r must be above 0: it gives the mean distance", file));
-  metric = set.in_metres();
-  return source;
-}
-
-bool holds_expansions(const std::string& file) {
-  if (!is_result_file(file)) return false;
-  const nlohmann::json document = result_json::parse(file);
-  return document.is_object() && document.contains("expansions");
 }
 
 void scale(SurfaceExpansion& expansion, double factor) {
@@ -137,18 +81,17 @@ Standing from_coefficients(const TipRequest& request, Backend& backend, Monitor&
   refuse_placing(asked);
   if (request.lmax >= 0)
     throw Error(Fault::bad_argument, fmt::format("--lmax is for meshes: {} holds an expansion already", file));
-  bool metric = false;
   SurfaceSource source;
   if (holds_expansions(file)) {
     source = load_surface({file, request.of, request.mesh, -1}, 0, backend, monitor);
-    metric = source.placement.units.stated;
   } else {
     if (!request.mesh.empty())
       throw Error(Fault::bad_argument, fmt::format("--mesh: only the JSON of `cowgpu expand` says how its mesh was "
                                                    "placed, and {} is another file",
                                                    file));
-    source = source_of_set(file, request.of, metric);
+    source = {read_surface_fields(file, request.of)};
   }
+  const bool metric = source.placement.units.stated;
   if (metric && asked.length_unit)
     throw Error(Fault::bad_argument, fmt::format("--length-unit: {} is in metres already", file));
   const double density = asked.density.value_or(1), metre = asked.length_unit.value_or(1);

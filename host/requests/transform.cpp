@@ -3,8 +3,9 @@
 #include "host/bounds.hpp"
 #include "host/clock.hpp"
 #include "host/error.hpp"
-#include "host/report/json_parts.hpp"
+#include "host/report/document_parts.hpp"
 #include "host/requests/memory.hpp"
+#include "host/spectrum/convert.hpp"
 
 #include <fmt/format.h>
 
@@ -73,12 +74,12 @@ TransformPlan plan_transform(const AnalyseRequest& request, const Backend& backe
 }
 
 TransformPlan plan_transform(const SynthesiseRequest& request, const Backend& backend) {
-  const CoefficientFile& in = request.input;
-  const int held = in.coefficients.lmax, degree = request.lmax < 0 ? held : request.lmax;
+  const CoefficientSet& in = request.input;
+  const int held = in.lmax, degree = request.lmax < 0 ? held : request.lmax;
   TransformPlan plan{"synthesis",
                      make_grid(request.grid, degree),
                      std::min(degree, held),
-                     field_names(in.names, in.coefficients.fields, "value"),
+                     field_names(in.names, in.fields, "value"),
                      in.notes,
                      in.convention,
                      backend.facts(),
@@ -93,22 +94,21 @@ AnalyseResult analyse(const AnalyseRequest& request, Backend& backend, Monitor& 
   const GridFile& in = request.input;
   AnalyseResult result;
   TransformRun& run = result.run = planned_run(request, backend);
-  CoefficientFile& out = result.coefficients;
   const auto transform = backend.sphere_transform(run.plan.grid, run.plan.lmax);
   transform->prepare();
   run.setup_seconds = seconds_since(start);
-  out.coefficients = SphereCoefficients(run.plan.lmax, in.fields());
-  out.convention = request.convention;
-  if (in.names != field_names({}, in.fields(), "value")) out.names = in.names;
-  transform->analyse(in.fields(), in.values, out.coefficients.values, monitor, &run.report);
-  for (const std::complex<double>& a : out.coefficients.values)
+  SphereCoefficients found(run.plan.lmax, in.fields());
+  transform->analyse(in.fields(), in.values, found.values, monitor, &run.report);
+  for (const std::complex<double>& a : found.values)
     if (!std::isfinite(a.real()) || !std::isfinite(a.imag())) refuse_overflow(request.name, run);
+  result.coefficients = set_of(found, request.convention);
+  if (in.names != field_names({}, in.fields(), "value")) result.coefficients.names = in.names;
   return result;
 }
 
 SynthesiseResult synthesise(const SynthesiseRequest& request, Backend& backend, Monitor& monitor) {
   const auto start = Clock::now();
-  const SphereCoefficients& in = request.input.coefficients;
+  const SphereCoefficients in = field_coefficients(request.input, request.name);
   SynthesiseResult result;
   TransformRun& run = result.run = planned_run(request, backend);
   GridFile& out = result.grid;

@@ -18,9 +18,9 @@ struct AnalyseRequest {
 };
 
 struct SynthesiseRequest {
-  CoefficientFile input; ///< as read_coefficients() has it
-  std::string name;      ///< name of the input, for messages
-  int lmax = -1;         ///< degree of the grid; below 0: the input's. Coefficients above it are left out
+  CoefficientSet input; ///< as read_fields() has it
+  std::string name;     ///< name of the input, for messages
+  int lmax = -1;        ///< degree of the grid; below 0: the input's. Coefficients above it are left out
   GridKind grid = GridKind::gauss_legendre;
 };
 
@@ -29,7 +29,7 @@ TransformPlan plan_transform(const AnalyseRequest& request, const Backend& backe
 TransformPlan plan_transform(const SynthesiseRequest& request, const Backend& backend);
 
 struct AnalyseResult {
-  CoefficientFile coefficients;
+  CoefficientSet coefficients; ///< real, in the convention that was asked for
   TransformRun run;
 };
 
@@ -39,7 +39,7 @@ struct SynthesiseResult {
 };
 
 /// The caller fills in `command`, `output` and the times of files. Throw what plan_transform() and the transform throw,
-/// and Error(file_format) where sums of the input overflow doubles.
+/// and Error(file_format) where sums of the input overflow doubles, bad_argument where the convention asked for does.
 AnalyseResult analyse(const AnalyseRequest& request, Backend& backend, Monitor& monitor);
 SynthesiseResult synthesise(const SynthesiseRequest& request, Backend& backend, Monitor& monitor);
 

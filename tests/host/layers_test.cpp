@@ -59,6 +59,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> nouns = {
     {"thread_pool", {"parallel", "signals"}},
     {"units", {"error", "number"}},
     {"run_report", {"kernel_time"}},
+    {"document", {"types"}},
     {"sphere_grid", {"error", "parallel"}},
     {"sphere_directions", {"sphere_grid", "types"}},
     {"coefficient_set", {"convention", "sphere_coefficients", "types"}},

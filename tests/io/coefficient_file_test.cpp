@@ -20,17 +20,18 @@ using Catch::StartsWith;
 
 namespace {
 
-CoefficientFile some_coefficients(int lmax, int fields, Convention convention = {}) {
-  CoefficientFile file;
-  file.coefficients = random_coefficients(lmax, fields, 11);
-  file.convention = convention;
-  return file;
+CoefficientSet some_coefficients(int lmax, int fields, Convention convention = {}) {
+  return set_of(random_coefficients(lmax, fields, 11), convention);
 }
 
-void write(const CoefficientFile& coefficients, const std::string& path) {
+void write(const CoefficientSet& coefficients, const std::string& path) {
   AtomicFile file(path);
-  write_coefficients(coefficients, file_format(path), file);
+  write_coefficient_set(coefficients, coefficient_format(path), file);
   file.commit();
+}
+
+SphereCoefficients read_numbers(const std::string& path) {
+  return field_coefficients(read_fields(path), path);
 }
 
 double largest_relative_difference(const SphereCoefficients& a, const SphereCoefficients& b) {
@@ -113,10 +114,7 @@ TEST_CASE("the netCDF layout of coefficients is pyshtools', number by number", "
   real.second[real.index(0, 1, 1)] = 7;
   real.second[real.index(0, 2, 1)] = 8;
   real.second[real.index(0, 2, 2)] = 9;
-  CoefficientFile file;
-  file.coefficients = orthonormal(real);
-  file.convention = real.convention;
-  write(file, folder / "c.nc");
+  write(real, folder / "c.nc");
 
   int nc = 0, count = 0, id = 0, dims[2] = {-1, -1}, found[2] = {-2, -2};
   ok(nc_open((folder / "c.nc").c_str(), NC_NOWRITE, &nc));
@@ -189,9 +187,9 @@ TEST_CASE("coefficients as pyshtools writes them are read in every netCDF format
       foreign.mode = mode;
       foreign.errors = errors;
       foreign.write(folder / "p.nc");
-      const CoefficientFile back = read_coefficients(folder / "p.nc");
+      const CoefficientSet back = read_fields(folder / "p.nc");
       CHECK(back.convention == Convention{Normalisation::four_pi, Phase::none});
-      const CoefficientSet real = set_of(back.coefficients, back.convention);
+      const CoefficientSet real = set_of(field_coefficients(back, "p.nc"), back.convention);
       CHECK(real.first[real.index(0, 2, 1)] == Approx(5).epsilon(1e-15));
       CHECK(real.second[real.index(0, 1, 1)] == Approx(7).epsilon(1e-15));
       CHECK(real.second[real.index(0, 2, 1)] == Approx(8).epsilon(1e-15));
@@ -209,30 +207,29 @@ TEST_CASE("coefficients read back from netCDF and CSV in every convention", "[co
         for (const int fields : {1, 12})
           for (const char* suffix : {"c.nc", "c.csv"}) {
             INFO(name(n) << " " << name(p) << " " << lmax << " " << fields << " " << suffix);
-            const CoefficientFile file = some_coefficients(lmax, fields, {n, p});
-            write(file, folder / suffix);
-            const CoefficientFile back = read_coefficients(folder / suffix);
-            CHECK(back.convention == file.convention);
-            CHECK(back.coefficients.fields == fields);
+            write(some_coefficients(lmax, fields, {n, p}), folder / suffix);
+            const CoefficientSet back = read_fields(folder / suffix);
+            CHECK(back.convention == Convention{n, p});
+            CHECK(back.fields == fields);
             CHECK(back.names.size() == std::size_t(fields));
-            CHECK(largest_relative_difference(file.coefficients, back.coefficients) <= 1e-15);
+            CHECK(largest_relative_difference(random_coefficients(lmax, fields, 11),
+                                              field_coefficients(back, suffix)) <= 1e-15);
           }
 }
 
 TEST_CASE("names of fields survive in netCDF", "[coefficient-file]") {
   const TemporaryFolder folder;
-  CoefficientFile file = some_coefficients(3, 2);
+  CoefficientSet file = some_coefficients(3, 2);
   file.names = {"height of the surface over its mean", ""};
   write(file, folder / "c.nc");
-  CHECK(read_coefficients(folder / "c.nc").names == file.names);
+  CHECK(read_fields(folder / "c.nc").names == file.names);
 }
 
 TEST_CASE("the CSV layout of coefficients is the one laid down", "[coefficient-file]") {
   const TemporaryFolder folder;
-  CoefficientFile file;
-  file.coefficients = SphereCoefficients(1, 1);
-  file.coefficients.at(0, 0, 0) = 0.1;
-  file.coefficients.at(0, 1, 0) = -2;
+  CoefficientSet file(1, 1);
+  file.first[file.index(0, 0, 0)] = 0.1;
+  file.first[file.index(0, 1, 0)] = -2;
   write(file, folder / "c.csv");
   const std::string text = read_text(folder / "c.csv");
   CHECK_THAT(text, StartsWith("# cowgpu "));
@@ -248,7 +245,7 @@ TEST_CASE("netCDF files that hold no coefficients we can use are named errors", 
     change(bad);
     bad.write(path);
     INFO(words);
-    CHECK_THAT(fault_of([&] { read_coefficients(path); }), StartsWith(fault) && Contains(words) && Contains(path));
+    CHECK_THAT(fault_of([&] { read_numbers(path); }), StartsWith(fault) && Contains(words) && Contains(path));
   };
   refused("file-syntax", "normalization is missing", [](Foreign& f) { f.normalization.clear(); });
   refused("file-syntax", "must be ortho", [](Foreign& f) { f.normalization = "5pi"; });
@@ -273,7 +270,7 @@ TEST_CASE("CSV coefficients that are wrong are named errors with file and line",
   const std::string good = "# lmax 2\n# normalisation schmidt\n# phase "
                            "none\nl,m,C,S\n0,0,1,0\n1,0,2,0\n1,1,3,4\n2,0,5,0\n2,1,6,7\n2,2,8,9\n";
   write_text(path, good);
-  REQUIRE(read_coefficients(path).coefficients.lmax == 2);
+  REQUIRE(read_fields(path).lmax == 2);
   struct Bad {
     const char* fault;
     int line;
@@ -302,7 +299,7 @@ TEST_CASE("CSV coefficients that are wrong are named errors with file and line",
   };
   for (const Bad& bad : all) {
     write_text(path, bad.text);
-    const std::string found = fault_of([&] { read_coefficients(path); });
+    const std::string found = fault_of([&] { read_numbers(path); });
     INFO(bad.text << "\n" << found);
     CHECK_THAT(found, StartsWith(fmt::format("{}: {}:{}: ", bad.fault, path, bad.line)));
   }
@@ -316,8 +313,8 @@ TEST_CASE("an expansion in JSON that is wrong is a named error", "[coefficient-f
       R"( "normalisation": "orthonormal", "condon_shortley": true, "coefficients": [[0, 0, 1, 0], [1, 0, 2, 0],)"
       "\n[1, 1, 3, 4.5]]}}}";
   write_text(path, good);
-  const CoefficientFile file = read_coefficients(path);
-  CHECK(file.coefficients.at(0, 1, 1) == std::complex<double>(3, 4.5));
+  const CoefficientSet file = read_fields(path);
+  CHECK(field_coefficients(file, path).at(0, 1, 1) == std::complex<double>(3, 4.5));
   CHECK_THAT(file.notes.at(0), Contains("R = 2.5"));
   const std::vector<std::string> all = {
       "",
@@ -345,13 +342,13 @@ TEST_CASE("an expansion in JSON that is wrong is a named error", "[coefficient-f
   };
   for (const std::string& text : all) {
     write_text(path, text);
-    const std::string found = fault_of([&] { read_coefficients(path); });
+    const std::string found = fault_of([&] { read_numbers(path); });
     INFO(text.substr(0, 200) << "\n" << found);
     CHECK_THAT(found, StartsWith("file-") && Contains(path));
   }
   for (std::size_t length = 0; length < good.size(); ++length) {
     write_text(path, good.substr(0, length));
-    CHECK_THAT(fault_of([&] { read_coefficients(path); }), StartsWith("file-syntax: "));
+    CHECK_THAT(fault_of([&] { read_numbers(path); }), StartsWith("file-syntax: "));
   }
 }
 
@@ -368,7 +365,7 @@ TEST_CASE("damaged netCDF coefficients are read or named errors, never a crash",
   for (const std::string& good : files)
     for (std::uint32_t seed = 0; seed < 150; ++seed) {
       write_text(path, damaged(good, seed));
-      const std::string found = fault_of([&] { read_coefficients(path); });
+      const std::string found = fault_of([&] { read_numbers(path); });
       INFO(seed << ": " << found);
       const bool named = found.rfind("file-", 0) == 0 || found.rfind("too-large", 0) == 0;
       CHECK((found == "none" || named));

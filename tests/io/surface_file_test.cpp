@@ -4,6 +4,7 @@
 #include "host/io/mesh_source.hpp"
 #include "host/map/stretch.hpp"
 #include "host/mesh/body.hpp"
+#include "host/spectrum/convert.hpp"
 #include "host/spectrum/expand_surface.hpp"
 #include "tests/support/fields.hpp"
 #include "tests/support/run_program.hpp"
@@ -100,7 +101,7 @@ TEST_CASE("a file of no surface expansion, or a damaged one, is a named error", 
   const std::string path = folder / "e.json";
   const std::string good = file_json(surface_json("stretch"));
   REQUIRE(fault_of_reading(path, good) == "none");
-  CHECK_THAT(fault_of([&] { read_coefficients(path); }), StartsWith("file-format: ") && Contains("no mass moments"));
+  CHECK_THAT(fault_of([&] { read_fields(path); }), StartsWith("file-format: ") && Contains("no mass moments"));
   CHECK_THAT(fault_of_reading(path, file_json(R"("mass": {"lmax": 0})")),
              StartsWith("file-format: " + path) && Contains("--of stretch -o FILE.json"));
   CHECK_THAT(fault_of_reading(path, file_json("")), StartsWith("file-format: ") && Contains("no expansion"));
@@ -153,21 +154,21 @@ TEST_CASE("the CSV of a surface expansion reads back as its fields", "[surface_f
   REQUIRE(run_program({"expand", "builtin:cow@1", "--of", "smooth,mass", "--lmax", "5", "--device", "cpu", "-q", "-o",
                        json, "-o", csv})
               .exit_code == 0);
-  const CoefficientFile table = read_coefficients(csv);
+  const CoefficientSet table = read_fields(csv);
   CHECK(table.names == std::vector<std::string>{"mass", "smooth_f_r", "smooth_f_dtheta", "smooth_f_dphi", "smooth_x",
                                                 "smooth_y", "smooth_z"});
-  const CoefficientFile mass = read_coefficients(json);
+  const CoefficientSet mass = read_fields(json);
   CHECK(table.notes == mass.notes);
-  std::vector<std::complex<double>> want = mass.coefficients.values;
+  std::vector<std::complex<double>> want = orthonormal(mass).values;
   const SurfaceFile surface = read_surface(json);
   want.insert(want.end(), surface.expansion.coefficients.values.begin(), surface.expansion.coefficients.values.end());
-  CHECK(table.coefficients.values == want);
+  CHECK(orthonormal(table).values == want);
 
   REQUIRE(run_program({"expand", "builtin:cow@1", "--of", "smooth", "--lmax", "5", "--device", "cpu", "-q", "-o", csv})
               .exit_code == 0);
-  CHECK(read_coefficients(csv).coefficients.values == surface.expansion.coefficients.values);
+  CHECK(orthonormal(read_fields(csv)).values == surface.expansion.coefficients.values);
   CHECK_THAT(read_text(csv),
              Contains("# smooth_origin (centre of mass) ") && Contains("# smooth_removed_mean_f_dphi "));
   write_text(csv, replaced(read_text(csv), "smooth_x_im", "smooth_y_im"));
-  CHECK_THAT(fault_of([&] { read_coefficients(csv); }), StartsWith("file-format: "));
+  CHECK_THAT(fault_of([&] { read_fields(csv); }), StartsWith("file-format: "));
 }

@@ -1,3 +1,4 @@
+#include "host/io/document_json.hpp"
 #include "host/report/findings_report.hpp"
 
 #include <catch2/catch.hpp>
@@ -20,7 +21,7 @@ Findings with_table() {
 } // namespace
 
 TEST_CASE("a table of findings is a member with columns, units and rows", "[physics]") {
-  const auto found = nlohmann::json(findings_json(with_table(), "cowgpu.tip.v1", {"cowgpu", "tip"}));
+  const auto found = nlohmann::json::parse(json_text(document(with_table(), "cowgpu.tip.v1", {"cowgpu", "tip"})));
   CHECK(found["orders"]["columns"] == nlohmann::json({"order", "force", "held"}));
   CHECK(found["orders"]["units"] == nlohmann::json({"", "N", ""}));
   CHECK(found["orders"]["rows"] == nlohmann::json::parse(R"([[0, 0, true], ["full", 1234.56789, null]])"));
@@ -40,10 +41,10 @@ TEST_CASE("a table of entries is a list of objects, with columns that the screen
   Findings found = with_table();
   found.tables[0].as_entries = true;
   found.tables[0].columns[2].on_screen = false;
-  const auto document = nlohmann::json(findings_json(found, "cowgpu.tip.v1", {"cowgpu", "tip"}));
-  CHECK(document["orders"] == nlohmann::json::parse(R"([{"order": 0, "force": 0, "held": true},
+  const auto json = nlohmann::json::parse(json_text(document(found, "cowgpu.tip.v1", {"cowgpu", "tip"})));
+  CHECK(json["orders"] == nlohmann::json::parse(R"([{"order": 0, "force": 0, "held": true},
                                                         {"order": "full", "force": 1234.56789, "held": null}])"));
-  CHECK(document["units"]["orders.force"] == "N");
+  CHECK(json["units"]["orders.force"] == "N");
   std::string text;
   write_findings(found, [&](std::string_view part) { text += part; });
   CHECK(text == "a body\n"
@@ -64,10 +65,10 @@ TEST_CASE("a value that there is none of has no unit on the screen, and is null 
                 "  mass                                   not known\n"
                 "  lifts off after                        never\n"
                 "  gravity                                9.5 m\n");
-  const auto document = nlohmann::json(findings_json(found, "cowgpu.tip.v1", {"cowgpu", "tip"}));
-  CHECK(document["mass_kg"].is_null());
-  CHECK(document["lift_s"].is_null());
-  CHECK(document["units"]["lift_s"] == "s");
+  const auto json = nlohmann::json::parse(json_text(document(found, "cowgpu.tip.v1", {"cowgpu", "tip"})));
+  CHECK(json["mass_kg"].is_null());
+  CHECK(json["lift_s"].is_null());
+  CHECK(json["units"]["lift_s"] == "s");
 }
 
 TEST_CASE("remarks in a table's last column begin at one place", "[physics]") {

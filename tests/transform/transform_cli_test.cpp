@@ -27,11 +27,8 @@ ProgramRun run_on_cpu(std::vector<std::string> arguments) {
 }
 
 void write_random(const std::string& path, int lmax, int fields, Convention convention = {}) {
-  CoefficientFile file;
-  file.coefficients = random_coefficients(lmax, fields, 2);
-  file.convention = convention;
   AtomicFile out(path);
-  write_coefficients(file, file_format(path), out);
+  write_coefficient_set(set_of(random_coefficients(lmax, fields, 2), convention), coefficient_format(path), out);
   out.commit();
 }
 
@@ -60,9 +57,9 @@ TEST_CASE("coefficients survive a synthesis and an analysis on files of any kind
             run_on_cpu({"transform", "analyse", map, out, "--normalisation", "4pi", "--phase", "cs"});
         INFO(back.err);
         REQUIRE(back.exit_code == 0);
-        const CoefficientFile a = read_coefficients(in), b = read_coefficients(out);
+        const CoefficientSet a = read_fields(in), b = read_fields(out);
         CHECK(b.convention == Convention{Normalisation::four_pi, Phase::condon_shortley});
-        CHECK(compare(a.coefficients, b.coefficients).max <= 2e-14);
+        CHECK(compare(orthonormal(a), orthonormal(b)).max <= 2e-14);
       }
 }
 
@@ -84,8 +81,7 @@ TEST_CASE("a field in closed form has its coefficients", "[transform-cli]") {
   REQUIRE(run.exit_code == 0);
   const std::string text = read_text(folder / "c.csv");
   CHECK_THAT(text, Contains("# normalisation unnormalised\n# phase none\n# fields dipole\nl,m,C,S\n"));
-  const CoefficientFile c = read_coefficients(folder / "c.csv");
-  const CoefficientSet real = set_of(c.coefficients, c.convention);
+  const CoefficientSet real = read_fields(folder / "c.csv");
   CHECK(real.first[real.index(0, 0, 0)] == Approx(2).epsilon(1e-14));
   CHECK(real.second[real.index(0, 1, 1)] == Approx(1).epsilon(1e-14));
   CHECK(std::fabs(real.first[real.index(0, 1, 0)]) < 1e-14);
@@ -101,11 +97,11 @@ TEST_CASE("a lower degree leaves coefficients out and a higher one makes a finer
   CHECK(run_on_cpu({"transform", "synthesise", folder / "in.nc", folder / "high.nc", "--lmax", "15"}).exit_code == 0);
   CHECK(read_grid(folder / "high.nc").grid.rings == 16);
   CHECK(run_on_cpu({"transform", "analyse", folder / "high.nc", folder / "back.nc"}).exit_code == 0);
-  const CoefficientFile back = read_coefficients(folder / "back.nc");
-  CHECK(back.coefficients.lmax == 15);
+  const SphereCoefficients back = orthonormal(read_fields(folder / "back.nc"));
+  CHECK(back.lmax == 15);
   double above = 0;
   for (int m = 0; m <= 15; ++m)
-    for (int l = std::max(m, 10); l <= 15; ++l) above = std::max(above, std::abs(back.coefficients.at(0, l, m)));
+    for (int l = std::max(m, 10); l <= 15; ++l) above = std::max(above, std::abs(back.at(0, l, m)));
   CHECK(above <= 1e-14);
 }
 
@@ -234,9 +230,6 @@ TEST_CASE("files that are missing, folders, or the wrong kind are named errors t
 
 TEST_CASE("unnormalised coefficients of a high degree are refused with the reason", "[transform-cli]") {
   const TemporaryFolder folder;
-  CoefficientFile file;
-  file.coefficients = SphereCoefficients(160, 1);
-  file.coefficients.at(0, 160, 160) = 1;
   GridFile grid;
   grid.grid = make_grid(GridKind::gauss_legendre, 160);
   grid.lmax = 160;
@@ -271,16 +264,15 @@ TEST_CASE("a dry run of the transforms prints the memory and writes nothing", "[
 
 TEST_CASE("the spectrum of a file is its power per degree, whatever its convention", "[transform-cli]") {
   const TemporaryFolder folder;
-  CoefficientFile file;
-  file.coefficients = SphereCoefficients(3, 2);
-  file.coefficients.at(0, 0, 0) = 2;
-  file.coefficients.at(0, 2, 1) = {0, 3};
-  file.coefficients.at(1, 2, 1) = {1, -1};
-  file.names = {"height", "gravity"};
+  SphereCoefficients fields(3, 2);
+  fields.at(0, 0, 0) = 2;
+  fields.at(0, 2, 1) = {0, 3};
+  fields.at(1, 2, 1) = {1, -1};
   for (const auto n : {Normalisation::orthonormal, Normalisation::schmidt}) {
-    file.convention = {n, Phase::none};
+    CoefficientSet set = set_of(fields, {n, Phase::none});
+    set.names = {"height", "gravity"};
     AtomicFile out(folder / "c.nc");
-    write_coefficients(file, FileFormat::netcdf, out);
+    write_coefficient_set(set, CoefficientFormat::netcdf, out);
     out.commit();
     const ProgramRun run = run_program({"spectrum", folder / "c.nc", "--cross"});
     INFO(run.out << run.err);
