@@ -209,7 +209,7 @@ TEST_CASE("a check of moments allocates no more than it says", "[memory]") {
           double(verify_bytes(problem, how) + cpu->moments(problem)->memory().host + 16 * Multipoles::count(lmax));
       INFO("said " << said << " bytes, took " << taken);
       CHECK(taken <= said + 65536);
-      CHECK(said <= 6 * taken + 65536);
+      if (how == Verify::full) CHECK(said <= 6 * taken + 65536); // the sample takes a part of the faces alone
     }
   }
 }
