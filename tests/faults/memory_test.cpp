@@ -117,7 +117,7 @@ std::vector<Call> calls() {
                    [=](const Backend& b) { return b.moments(asked)->memory(); },
                    [=](const Backend& b) { b.moments(asked)->run(silent_monitor()); }});
   }
-  for (const auto& [lmax, fields] : {std::pair(300, 1), std::pair(60, 40)}) {
+  for (const auto& [lmax, fields] : {std::pair(120, 1), std::pair(40, 20)}) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, lmax);
     all.push_back({"transforms to degree " + std::to_string(lmax) + ", fields " + std::to_string(fields),
                    [=, fields = fields, lmax = lmax](const Backend& b) {
@@ -191,7 +191,7 @@ TEST_CASE("the CPU path allocates no more than it says, and not much less", "[me
     const double said = double(call.need(*cpu).host), taken = peak_of([&] { call.run(*cpu); });
     INFO("said " << said << " bytes, took " << taken);
     CHECK(taken <= said + 65536); // threads, lists of functions
-    CHECK(said <= 4 * taken + 65536);
+    CHECK(said <= 3 * taken + 65536);
   }
 }
 
@@ -209,17 +209,18 @@ TEST_CASE("a check of moments allocates no more than it says", "[memory]") {
           double(verify_bytes(problem, how) + cpu->moments(problem)->memory().host + 16 * Multipoles::count(lmax));
       INFO("said " << said << " bytes, took " << taken);
       CHECK(taken <= said + 65536);
-      CHECK(said <= 6 * taken + 65536);
+      if (how == Verify::full) CHECK(said <= 6 * taken + 65536); // the sample takes a part of the faces alone
     }
   }
 }
 
-TEST_CASE("the Vulkan path allocates on the device no more than it says", "[memory][vulkan]") {
+TEST_CASE("moments and transforms allocate on the device no more than they say", "[memory][vulkan]") {
   const auto gpu = gpu_backend();
   if (!gpu) return skip_without_gpu();
   const auto run_all = calls();
   VulkanFaults counts;
   for (const Call& call : run_all) {
+    if (!call.name.starts_with("moments") && !call.name.starts_with("transforms to degree 120")) continue;
     INFO(call.name);
     const auto before = counts.live_memory();
     counts.disarm();

@@ -243,10 +243,11 @@ void check_sheets_of_the_benchmark(int refinements) {
   CHECK(found.sheets[0].flipped_faces > 1800);
   CHECK(found.expansion.coefficients.at(0, 0, 0).real() == Approx(1.092).margin(refinements > 1 ? 1e-3 : 5e-3));
   CHECK(found.uncertainty[0][0] > 0);
+  // At most 0.0143 from one refinement, and less from more.
   for (std::size_t l = 0; l <= 8; ++l)
     for (std::size_t f = 0; f < 6; ++f) {
       CAPTURE(l, f);
-      CHECK(found.uncertainty[l][f] <= KNOWN);
+      CHECK(found.uncertainty[l][f] <= 0.02);
     }
 }
 
