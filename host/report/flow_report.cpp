@@ -19,7 +19,7 @@ ordered_json point_json(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-ordered_json rows_json(const std::vector<std::array<double, 6>>& degrees) {
+ordered_json degree_rows_json(const std::vector<std::array<double, 6>>& degrees) {
   ordered_json rows = ordered_json::array();
   for (const auto& row : degrees) rows.push_back(row);
   return rows;
@@ -64,7 +64,7 @@ ordered_json converged_json(const ConvergedTable& table) {
     }
   return {{"meaning", "sheets"},
           {"removed_means", {{"f_dtheta", table.expansion.mean_dtheta}, {"f_dphi", table.expansion.mean_dphi}}},
-          {"uncertainty", rows_json(table.uncertainty)},
+          {"uncertainty", degree_rows_json(table.uncertainty)},
           {"coefficients", rows}};
 }
 
@@ -150,7 +150,7 @@ ordered_json flow_json(const FlowResult& flow) {
                        {"one_to_one", star_shaped},
                        {"points", flow_points_json(flow.points)},
                        {"sheets", sheets_json(flow.sheets)},
-                       {"uncertainty", rows_json(flow.uncertainty)}};
+                       {"uncertainty", degree_rows_json(flow.uncertainty)}};
   if (flow.level_set)
     json["level_set"] = {{"queries", flow.level_set->queries},
                          {"largest_residual", flow.level_set->largest_residual},

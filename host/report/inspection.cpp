@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const Vec3& v) {
+Json place_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
@@ -34,8 +34,9 @@ std::vector<const FacePair*> first_pairs(const SelfIntersections& found) {
 Json json_of(const RawMesh& mesh, const SelfIntersections& found) {
   Json listed = Json::array();
   for (const FacePair* pair : first_pairs(found)) {
-    Json one = {
-        {"faces", {pair->first, pair->second}}, {"kind", name(pair->how.meeting)}, {"place", json_of(middle(*pair))}};
+    Json one = {{"faces", {pair->first, pair->second}},
+                {"kind", name(pair->how.meeting)},
+                {"place", place_json(middle(*pair))}};
     if (!mesh.face_lines.empty()) one["lines"] = {mesh.face_lines[pair->first], mesh.face_lines[pair->second]};
     listed.push_back(one);
   }
@@ -86,7 +87,7 @@ nlohmann::ordered_json inspection_json(const Inspection& found, const std::strin
   if (a.genus) out["genus"] = *a.genus;
   if (a.finite) {
     out["area"] = a.area;
-    out["bounding_box"] = {json_of(a.box.min), json_of(a.box.max)};
+    out["bounding_box"] = {place_json(a.box.min), place_json(a.box.max)};
     out["shortest_edge"] = a.shortest_edge;
     out["longest_edge"] = a.longest_edge;
   }
@@ -96,13 +97,13 @@ nlohmann::ordered_json inspection_json(const Inspection& found, const std::strin
     out["overlapped"] = json_of(found.overlap->overlapped, *a.volume);
     out["inverted"] = json_of(found.overlap->inverted, *a.volume);
   }
-  if (a.centre_of_mass) out["centre_of_mass"] = json_of(*a.centre_of_mass);
+  if (a.centre_of_mass) out["centre_of_mass"] = place_json(*a.centre_of_mass);
   if (found.brillouin_radius) {
     out["brillouin_radius"] = *found.brillouin_radius;
     out["inscribed_radius"] = found.inscribed_radius ? Json(*found.inscribed_radius) : Json();
   }
   if (found.largest_ball)
-    out["largest_ball"] = {{"centre", json_of(found.largest_ball->centre)},
+    out["largest_ball"] = {{"centre", place_json(found.largest_ball->centre)},
                            {"radius", found.largest_ball->radius},
                            {"bound", found.largest_ball->bound}};
   out["notes"] = mesh.notes;

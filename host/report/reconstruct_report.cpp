@@ -51,25 +51,25 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
-ordered_json json_of(const Vec3& v) {
+ordered_json finite_json(const Vec3& v) {
   return {number(v.x()), number(v.y()), number(v.z())};
 }
 
-ordered_json json_of(const Eigen::Matrix3d& m) {
+ordered_json finite_json(const Eigen::Matrix3d& m) {
   ordered_json rows = ordered_json::array();
-  for (int row = 0; row < 3; ++row) rows.push_back(json_of(Vec3(m.row(row))));
+  for (int row = 0; row < 3; ++row) rows.push_back(finite_json(Vec3(m.row(row))));
   return rows;
 }
 
 ordered_json json_of(const OneWayDistance& way) {
-  return {{"rms", way.rms}, {"largest", way.largest}, {"where", json_of(way.where)}};
+  return {{"rms", way.rms}, {"largest", way.largest}, {"where", finite_json(way.where)}};
 }
 
 ordered_json measures_json(const SurfaceMeasures& m) {
   return {{"volume", number(m.volume)},
-          {"centre_of_mass", json_of(m.centre_of_mass)},
-          {"inertia", json_of(m.inertia)},
-          {"principal_moments", json_of(principal_moments(m.inertia))}};
+          {"centre_of_mass", finite_json(m.centre_of_mass)},
+          {"inertia", finite_json(m.inertia)},
+          {"principal_moments", finite_json(principal_moments(m.inertia))}};
 }
 
 ordered_json order_json(const ReconstructReport& report, const RebuiltOrder& order) {
@@ -180,7 +180,7 @@ void write_json(const ReconstructReport& report, const Sink& sink) {
         {"map", report.map_method},
         {"recipe", report.recipe},
         {"lmax", expansion.coefficients.lmax},
-        {"origin", json_of(expansion.origin)},
+        {"origin", finite_json(expansion.origin)},
         {"dphi", expansion.signed_dphi ? "signed" : "absolute"},
         {"spherical_radius", spherical_radius(expansion)}}},
       {"fields", fields_name(report.fields)},
