@@ -30,9 +30,13 @@ function(cowgpu_compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# cowgpu_precompile(TARGET HEADER)
-function(cowgpu_precompile target header)
-  target_precompile_headers(${target} PRIVATE ${header})
+# cowgpu_precompile(TARGET HEADER) or cowgpu_precompile(TARGET REUSE_FROM OTHER), where both are compiled with the same options.
+function(cowgpu_precompile target)
+  if(ARGV1 STREQUAL "REUSE_FROM")
+    target_precompile_headers(${target} ${ARGN})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
   # Of precompiled headers GCC 12 forgets that they are the system's, and warns about std::string and Eigen in them.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds>)
 endfunction()
