@@ -16,7 +16,7 @@ namespace cowgpu {
 namespace {
 
 constexpr double jump_angle = 0.05, jump_length = 0.02; // radians, diagonals
-constexpr std::size_t batch = 1 << 14;                  // parts cut at a time
+constexpr std::size_t parts_at_a_time = 1 << 14;        // parts cut at a time
 constexpr std::size_t least_finer = 1 << 17;
 constexpr int side = 4, most_depth = 10;
 constexpr std::size_t children = side * side;
@@ -52,7 +52,7 @@ struct Foot {
 };
 
 /// A part of a cell: one of 4^depth rows and columns.
-struct Part {
+struct CellPart {
   std::uint32_t cell;
   std::uint32_t row = 0, column = 0;
   std::size_t first_piece = 0, last_piece = 0; ///< those seen in it: of `pieces_`
@@ -62,13 +62,13 @@ struct Part {
 };
 
 // Hammersley's points, by number: of a square's 4 x 4 parts and its 16 strips either way each has one in it.
-struct Place {
+struct PlaceInPart {
   double across, along;
   std::size_t part; ///< row * side + column
 };
 
-constexpr std::array<Place, children> places_in_part = [] {
-  std::array<Place, children> places{};
+constexpr std::array<PlaceInPart, children> places_in_part = [] {
+  std::array<PlaceInPart, children> places{};
   for (std::size_t i = 0; i < children; ++i) {
     places[i] = {(double(i / side) + 0.5) / side, (double(i % side) + 0.5) / side, i};
   }
@@ -107,24 +107,24 @@ public:
     moved_ = jump_length * std::min((set_.box.max - set_.box.min).norm(), 10 * mean);
     mark_by_neighbours();
     find_pieces(vertices, faces);
-    std::vector<Part> parts = cells_as_parts();
+    std::vector<CellPart> parts = cells_as_parts();
     found_.cells = parts.size();
     if (options.parts == 1) return std::move(values_);
     mend_border();
     const auto whole = double(parts.size());
     std::size_t left = std::max(least_finer, std::size_t(options.finer * double(n_))) / children;
     for (int depth = 0; !parts.empty(); ++depth) {
-      std::vector<Part> next;
+      std::vector<CellPart> next;
       std::vector<Piece> next_pieces;
-      for (std::size_t begin = 0; begin < parts.size(); begin += batch) {
+      for (std::size_t begin = 0; begin < parts.size(); begin += parts_at_a_time) {
         monitor_.progress("averaging over jumps", std::min(1.0, double(begin) / whole));
-        cut(std::span(parts).subspan(begin, std::min(batch, parts.size() - begin)), depth, next, next_pieces);
+        cut(std::span(parts).subspan(begin, std::min(parts_at_a_time, parts.size() - begin)), depth, next, next_pieces);
       }
       found_.depth = depth + 1;
       const std::size_t taken = depth + 1 < most_depth ? std::min(left, next.size()) : 0;
       const auto middle = next.begin() + std::ptrdiff_t(taken);
       if (taken < next.size())
-        std::nth_element(next.begin(), middle, next.end(), [](const Part& a, const Part& b) {
+        std::nth_element(next.begin(), middle, next.end(), [](const CellPart& a, const CellPart& b) {
           return a.urgency != b.urgency ? a.urgency > b.urgency
                                         : std::tie(a.cell, a.row, a.column) < std::tie(b.cell, b.row, b.column);
         });
@@ -281,12 +281,12 @@ private:
     return seen;
   }
 
-  std::vector<Part> cells_as_parts() const {
-    std::vector<Part> parts;
+  std::vector<CellPart> cells_as_parts() const {
+    std::vector<CellPart> parts;
     std::size_t piece = 0;
     for (std::size_t p = 0; p < n_; ++p) {
       if (!marked_[p]) continue;
-      Part part;
+      CellPart part;
       part.cell = std::uint32_t(p);
       part.first_piece = piece;
       while (piece < pieces_.size() && cells_of_pieces_[piece] == p) ++piece;
@@ -301,12 +301,12 @@ private:
     return grid_.weights[cell / length_] * step_ * std::pow(double(children), -depth);
   }
 
-  void miss(const Part& part) {
+  void miss(const CellPart& part) {
     found_.missed_length += part.missed_length;
     found_.missed_angle += part.missed_angle;
   }
 
-  Vec3 direction_of(const Part& part, int depth, double across, double along) const {
+  Vec3 direction_of(const CellPart& part, int depth, double across, double along) const {
     const double parts = std::pow(double(side), depth);
     const std::size_t ring = part.cell / length_;
     const double down = (part.row + across) / parts, right = (part.column + along) / parts - 0.5;
@@ -316,11 +316,11 @@ private:
   }
 
   // Cuts parts of a depth; those of the next depth that are to be cut again are added to `next`, with their pieces.
-  void cut(std::span<const Part> parts, int depth, std::vector<Part>& next, std::vector<Piece>& next_pieces) {
+  void cut(std::span<const CellPart> parts, int depth, std::vector<CellPart>& next, std::vector<Piece>& next_pieces) {
     std::vector<Vec3> directions;
     directions.reserve(parts.size() * children);
-    for (const Part& part : parts)
-      for (const Place& place : places_in_part)
+    for (const CellPart& part : parts)
+      for (const PlaceInPart& place : places_in_part)
         directions.push_back(direction_of(part, depth, place.across, place.along));
     LevelSetReport met;
     const LevelSetPoints ends = level_set_points(set_, directions, monitor_, &met);
@@ -329,7 +329,7 @@ private:
     const double share = std::pow(double(children), -depth);
     std::vector<Block> blocks(parts.size());
     for (std::size_t k = 0; k < parts.size(); ++k) {
-      const Part& part = parts[k];
+      const CellPart& part = parts[k];
       Values mean{};
       for (std::size_t i = 0; i < children; ++i) {
         const std::size_t at = k * children + i;
@@ -367,7 +367,7 @@ private:
   }
 
   // The pieces of each part cut in four, and how far those that are seen stick out of the values about them.
-  void find_spikes(std::span<const Part> parts, int depth, std::vector<Block>& blocks) {
+  void find_spikes(std::span<const CellPart> parts, int depth, std::vector<Block>& blocks) {
     struct Found {
       std::size_t block, part;
       double off, length, angle;
@@ -408,7 +408,7 @@ private:
     }
   }
 
-  void judge(const Part& parent, int depth, Block& block, std::vector<Part>& next,
+  void judge(const CellPart& parent, int depth, Block& block, std::vector<CellPart>& next,
              std::vector<Piece>& next_pieces) const {
     std::stable_sort(block.pieces.begin(), block.pieces.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -416,7 +416,7 @@ private:
     const double solid = solid_angle(parent.cell, depth);
     for (std::size_t i = 0; i < children; ++i) {
       if (!(block.off[i] > 1)) continue;
-      Part part;
+      CellPart part;
       part.cell = parent.cell;
       part.row = parent.row * side + std::uint32_t(i / side);
       part.column = parent.column * side + std::uint32_t(i % side);

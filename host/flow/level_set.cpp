@@ -17,7 +17,7 @@ constexpr std::size_t batch = 1 << 18;
 constexpr int most_passes = 200, careful_passes = 12, patient_passes = 30;
 
 /// One direction's search. Signed distance less the level, g, is below 0 at `low` and not below 0 at `high`, always.
-struct Ray {
+struct RayToLevel {
   Vec3 direction;
   double radius, low, high;
   double width;         ///< width of the bracket when it was last cut in its middle
@@ -52,10 +52,10 @@ public:
     ends.points.resize(directions.size());
     for (std::size_t begin = 0; begin < directions.size(); begin += batch) {
       check_stop(monitor_);
-      std::vector<Ray> rays;
+      std::vector<RayToLevel> rays;
       for (std::size_t i = begin; i < std::min(begin + batch, directions.size()); ++i) {
         // Any surface point is nearer to the origin than `outside_` by more than the level.
-        Ray ray{directions[i], outside_, 0, outside_, outside_};
+        RayToLevel ray{directions[i], outside_, 0, outside_, outside_};
         ray.at = std::uint32_t(i);
         rays.push_back(ray);
       }
@@ -77,16 +77,16 @@ private:
                     origin_.x(), origin_.y(), origin_.z(), closest.distance[0], level_));
   }
 
-  void step(std::vector<Ray>& rays, int pass, LevelSetPoints& ends) {
+  void step(std::vector<RayToLevel>& rays, int pass, LevelSetPoints& ends) {
     std::vector<Vec3> places;
     places.reserve(rays.size());
-    for (const Ray& ray : rays) places.push_back(origin_ + ray.radius * ray.direction);
+    for (const RayToLevel& ray : rays) places.push_back(origin_ + ray.radius * ray.direction);
     const ClosestPoints closest = field_.closest(places, {.with_sign = false}, monitor_);
     found_.queries += places.size();
     find_sides(rays, places, closest);
     std::size_t kept = 0;
     for (std::size_t k = 0; k < rays.size(); ++k) {
-      Ray ray = rays[k];
+      RayToLevel ray = rays[k];
       const double d = closest.distance[k], sign = ray.side < 0 ? -1 : 1, gap = sign * d - level_;
       const double slope = d > 0 ? sign * (places[k] - closest.point[k]).dot(ray.direction) / d : 0;
       (gap >= 0 ? ray.high : ray.low) = ray.radius;
@@ -116,11 +116,11 @@ private:
 
   // Beyond the level from the surface the side decides whether a place is inside the level set or outside of it. It stays
   // as it was within a ball that the surface does not meet; else it is asked for.
-  void find_sides(std::vector<Ray>& rays, const std::vector<Vec3>& places, const ClosestPoints& closest) {
+  void find_sides(std::vector<RayToLevel>& rays, const std::vector<Vec3>& places, const ClosestPoints& closest) {
     std::vector<Vec3> asked;
     std::vector<std::size_t> rays_of;
     for (std::size_t k = 0; k < rays.size(); ++k) {
-      Ray& ray = rays[k];
+      RayToLevel& ray = rays[k];
       if (!(std::abs(ray.radius - ray.last) < ray.reach)) ray.side = 0;
       ray.last = ray.radius;
       ray.reach = closest.distance[k];
@@ -136,7 +136,7 @@ private:
   }
 
   // Newton's step where it stays in the bracket; the bracket's middle where three steps have not halved it.
-  double next_radius(Ray& ray, const Met& met, const Vec3& closest, int pass) const {
+  double next_radius(RayToLevel& ray, const Met& met, const Vec3& closest, int pass) const {
     const double newton = ray.radius - met.gap / met.slope;
     double next = newton;
     if (met.gap > 0) {

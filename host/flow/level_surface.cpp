@@ -15,9 +15,9 @@ namespace cowgpu {
 namespace {
 
 constexpr int block = 4; // cubes along a side of what is looked at together
-constexpr int most_passes = 30;
+constexpr int most_vertex_passes = 30;
 
-using Place = std::array<std::int64_t, 3>;
+using Cube = std::array<std::int64_t, 3>;
 
 // The six tetrahedra of a cube: from corner 0 to corner 7 along the axes in each order. Bits of a corner are x, y, z. Odd
 // orders turn the other way.
@@ -42,33 +42,33 @@ public:
     }
   }
   double cell() const { return cell_; }
-  const Place& cubes() const { return counts_; }
+  const Cube& cubes() const { return counts_; }
   Vec3 at(double x, double y, double z) const { return first_ + cell_ * Vec3(x, y, z); }
-  std::uint64_t id(const Place& p) const {
+  std::uint64_t id(const Cube& p) const {
     return (std::uint64_t(p[2]) * std::uint64_t(counts_[1] + 1) + std::uint64_t(p[1])) * std::uint64_t(counts_[0] + 1) +
            std::uint64_t(p[0]);
   }
-  Place place(std::uint64_t id) const {
+  Cube place(std::uint64_t id) const {
     const auto nx = std::uint64_t(counts_[0] + 1), ny = std::uint64_t(counts_[1] + 1);
     return {std::int64_t(id % nx), std::int64_t(id / nx % ny), std::int64_t(id / nx / ny)};
   }
 
 private:
   double cell_ = 0;
-  Place counts_{};
+  Cube counts_{};
   Vec3 first_;
 };
 
-Place corner_of(const Place& cube, int corner) {
+Cube corner_of(const Cube& cube, int corner) {
   return {cube[0] + (corner & 1), cube[1] + (corner >> 1 & 1), cube[2] + (corner >> 2 & 1)};
 }
 
 // Corners of the blocks of cubes that the level may pass: distances change no faster than places.
-std::vector<Place> near_blocks(DistanceField& field, const Lattice& lattice, double level, Monitor& monitor,
-                               LevelSurfaceReport& report, std::uint64_t& cubes_inside) {
-  std::vector<Place> blocks;
+std::vector<Cube> near_blocks(DistanceField& field, const Lattice& lattice, double level, Monitor& monitor,
+                              LevelSurfaceReport& report, std::uint64_t& cubes_inside) {
+  std::vector<Cube> blocks;
   std::vector<Vec3> middles;
-  const Place n = lattice.cubes();
+  const Cube n = lattice.cubes();
   for (std::int64_t z = 0; z < n[2]; z += block)
     for (std::int64_t y = 0; y < n[1]; y += block)
       for (std::int64_t x = 0; x < n[0]; x += block) {
@@ -90,10 +90,10 @@ std::vector<Place> near_blocks(DistanceField& field, const Lattice& lattice, dou
 
 // Signed distances at the corners of the cubes.
 std::unordered_map<std::uint64_t, double> distances_at(DistanceField& field, const Lattice& lattice,
-                                                       const std::vector<Place>& blocks, Monitor& monitor,
+                                                       const std::vector<Cube>& blocks, Monitor& monitor,
                                                        LevelSurfaceReport& report) {
   std::vector<std::uint64_t> ids;
-  for (const Place& b : blocks)
+  for (const Cube& b : blocks)
     for (int z = 0; z <= block; ++z)
       for (int y = 0; y <= block; ++y)
         for (int x = 0; x <= block; ++x) ids.push_back(lattice.id({b[0] + x, b[1] + y, b[2] + z}));
@@ -102,7 +102,7 @@ std::unordered_map<std::uint64_t, double> distances_at(DistanceField& field, con
   std::vector<Vec3> points;
   points.reserve(ids.size());
   for (const std::uint64_t id : ids) {
-    const Place p = lattice.place(id);
+    const Cube p = lattice.place(id);
     points.push_back(lattice.at(double(p[0]), double(p[1]), double(p[2])));
   }
   const ClosestPoints closest = field.closest(points, {}, monitor);
@@ -123,7 +123,7 @@ enum class Side { outside, inside, cut };
 
 // A cube that the level may pass; of its corners.
 struct Passed {
-  Place cube;
+  Cube cube;
   Side side;
 };
 
@@ -133,7 +133,7 @@ public:
            TriangleSurface& surface)
       : lattice_(lattice), values_(values), level_(level), surface_(surface) {}
 
-  void cube(const Place& cube) {
+  void cube(const Cube& cube) {
     std::array<std::uint64_t, 8> ids{};
     std::array<double, 8> above{};
     int outside = 0;
@@ -166,7 +166,7 @@ private:
     if (a > b) std::swap(a, b), std::swap(at_a, at_b);
     const auto [found, is_new] = edges_.try_emplace({a, b}, std::uint32_t(surface_.vertices.size()));
     if (!is_new) return found->second;
-    const Place p = lattice_.place(a), q = lattice_.place(b);
+    const Cube p = lattice_.place(a), q = lattice_.place(b);
     // Away from the corners, where the vertices of all their edges would fall together.
     const double part = std::clamp(at_a / (at_a - at_b), 0.02, 0.98);
     const auto mix = [&](std::size_t c) { return double(p[c]) + part * double(q[c] - p[c]); };
@@ -236,7 +236,7 @@ void sample_volume(DistanceField& field, const Lattice& lattice, double level, c
     std::vector<Vec3> points;
     points.reserve((end - begin) * each);
     for (std::size_t i = begin; i < end; ++i) {
-      const Place& cube = cubes[i].cube;
+      const Cube& cube = cubes[i].cube;
       std::uint64_t number = 3 * each * lattice.id(cube);
       for (int z = 0; z < n; ++z)
         for (int y = 0; y < n; ++y)
@@ -267,7 +267,7 @@ void move_onto(DistanceField& field, double level, double enough, double cell, M
   surface.normals.assign(surface.vertices.size(), Vec3::UnitZ());
   std::vector<std::uint32_t> left(surface.vertices.size());
   for (std::size_t v = 0; v < left.size(); ++v) left[v] = std::uint32_t(v);
-  for (int pass = 0; pass < most_passes && !left.empty(); ++pass) {
+  for (int pass = 0; pass < most_vertex_passes && !left.empty(); ++pass) {
     check_stop(monitor);
     std::vector<Vec3> places;
     places.reserve(left.size());
@@ -280,7 +280,7 @@ void move_onto(DistanceField& field, double level, double enough, double cell, M
       const Vec3 away = places[i] - closest.point[i];
       Vec3& normal = surface.normals[left[i]];
       if (d != 0) normal = (d > 0 ? away : Vec3(-away)).normalized();
-      if (std::abs(d - level) <= enough || pass + 1 == most_passes) {
+      if (std::abs(d - level) <= enough || pass + 1 == most_vertex_passes) {
         report.largest_residual = std::max(report.largest_residual, std::abs(d - level));
         continue;
       }
@@ -300,14 +300,14 @@ TriangleSurface surface_in_cubes(DistanceField& field, const Vec3& low, const Ve
   found.cell = lattice.cell();
   monitor.progress("looking for the level set", 0);
   std::uint64_t cubes_inside = 0;
-  const std::vector<Place> blocks = near_blocks(field, lattice, level, monitor, found, cubes_inside);
+  const std::vector<Cube> blocks = near_blocks(field, lattice, level, monitor, found, cubes_inside);
   check_stop(monitor);
   const auto values = distances_at(field, lattice, blocks, monitor, found);
   check_stop(monitor);
   monitor.progress("looking for the level set", 0.5);
   TriangleSurface surface;
   Marching marching(lattice, values, level, surface);
-  for (const Place& b : blocks)
+  for (const Cube& b : blocks)
     for (int z = 0; z < block; ++z)
       for (int y = 0; y < block; ++y)
         for (int x = 0; x < block; ++x) marching.cube({b[0] + x, b[1] + y, b[2] + z});

@@ -16,7 +16,7 @@
 namespace cowgpu {
 namespace {
 
-constexpr std::size_t batch = 1 << 16;
+constexpr std::size_t most_regions = 1 << 16;
 constexpr std::uint64_t most_regions = 20'000'000;
 
 std::array<Vec3, 3> corners(const Vec3& a = Vec3::Zero()) {
@@ -78,10 +78,10 @@ bool sees_all(std::span<const Vec3> vertices, std::span<const Face> faces, const
   });
 }
 
-class Search {
+class StarSearch {
 public:
-  Search(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin, double tolerance,
-         Backend& backend, Monitor& monitor)
+  StarSearch(std::span<const Vec3> vertices, std::span<const Face> faces, const Vec3& origin, double tolerance,
+             Backend& backend, Monitor& monitor)
       : origin_(origin), tolerance_(tolerance), monitor_(monitor), field_(backend.distance_field(vertices, faces)) {
     Vec3 low = vertices[faces[0][0]], high = low;
     for (const Face& face : faces)
@@ -123,7 +123,7 @@ private:
     std::vector<Region> waiting = seeds_;
     while (!waiting.empty()) {
       // Depth first, in batches: what is found early rules out more.
-      const std::size_t count = std::min(batch, waiting.size());
+      const std::size_t count = std::min(most_regions, waiting.size());
       std::vector<Region> now(waiting.end() - std::ptrdiff_t(count), waiting.end());
       waiting.resize(waiting.size() - count);
       check_stop(monitor_);
@@ -169,7 +169,7 @@ private:
   StarShapeTime found_;
 };
 
-void Search::seed(std::span<const Vec3> vertices, std::span<const Face> faces) {
+void StarSearch::seed(std::span<const Vec3> vertices, std::span<const Face> faces) {
   // Besides directions along the surface every cone has one into the body, against the angle-weighted normal: a normal looks
   // away from it too (Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243).
   const std::vector<Vec3> outwards = vertex_normals(vertices, faces);
@@ -217,7 +217,7 @@ void Search::seed(std::span<const Vec3> vertices, std::span<const Face> faces) {
   seeds_.insert(seeds_.end(), flat.begin(), flat.end());
 }
 
-void Search::look(const std::vector<Region>& regions, std::vector<Region>& waiting) {
+void StarSearch::look(const std::vector<Region>& regions, std::vector<Region>& waiting) {
   const double level = found_.lower + tolerance_, rounding = 1e-12 * diagonal_;
   std::vector<const Region*> open;
   std::vector<Vec3> centres;
@@ -261,7 +261,7 @@ void Search::look(const std::vector<Region>& regions, std::vector<Region>& waiti
 }
 
 // The values at the regions' middles: the ball there shrinks from the size that would see the origin.
-void Search::raise(const std::vector<Region>& regions) {
+void StarSearch::raise(const std::vector<Region>& regions) {
   struct Try {
     Vec3 q, n;
     double radius;
@@ -320,7 +320,8 @@ StarShapeTime star_shape_time(std::span<const Vec3> vertices, std::span<const Fa
                               double tolerance, Backend& backend, Monitor& monitor) {
   if (faces.empty()) throw Error(Fault::bad_argument, "a surface without faces is not star-shaped at any time");
   if (!origin.allFinite()) throw Error(Fault::bad_argument, "the origin of a star-shaped body must be finite");
-  return Search(vertices, faces, origin, tolerance, backend, monitor).run(brillouin_radius(vertices, faces, origin));
+  return StarSearch(vertices, faces, origin, tolerance, backend, monitor)
+      .run(brillouin_radius(vertices, faces, origin));
 }
 
 } // namespace cowgpu

@@ -13,7 +13,7 @@
 namespace cowgpu {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") + 1 - first);
@@ -42,7 +42,7 @@ void read_row(CsvTable& table, std::string_view line, std::size_t number) {
   std::size_t found = 0;
   for (;; ++found) {
     const auto comma = line.find(',');
-    const std::string_view word = trimmed(line.substr(0, comma));
+    const std::string_view word = without_blanks(line.substr(0, comma));
     const auto value = read_number(word);
     if (!value)
       table.fail(Fault::file_syntax, number,
@@ -93,19 +93,19 @@ CsvTable parse_csv(std::string_view text, const std::string& name) {
   table.name = name;
   Lines lines(text);
   std::optional<std::string_view> line;
-  while ((line = lines.next()) && (line->starts_with('#') || trimmed(*line).empty())) {
-    const std::string_view comment = trimmed(trimmed(*line).substr(line->starts_with('#')));
+  while ((line = lines.next()) && (line->starts_with('#') || without_blanks(*line).empty())) {
+    const std::string_view comment = without_blanks(without_blanks(*line).substr(line->starts_with('#')));
     const auto space = comment.find_first_of(" \t");
     constexpr std::size_t most_words = 4096; // far more than any file of ours has
     if (space == std::string_view::npos || table.attributes.size() >= most_words) continue;
     table.attributes.try_emplace(std::string(comment.substr(0, space)),
-                                 CsvTable::Attribute{std::string(trimmed(comment.substr(space))), lines.number});
+                                 CsvTable::Attribute{std::string(without_blanks(comment.substr(space))), lines.number});
   }
   if (!line) table.fail(Fault::file_truncated, lines.number, "the file ends before the line of column names");
   table.header_line = lines.number;
   for (std::string_view rest = *line;;) {
     const auto comma = rest.find(',');
-    const std::string_view word = trimmed(rest.substr(0, comma));
+    const std::string_view word = without_blanks(rest.substr(0, comma));
     if (word.empty() || std::any_of(word.begin(), word.end(), [](char c) { return c < ' ' || c > '~'; }))
       table.fail(Fault::file_format, lines.number,
                  fmt::format("column names between commas expected, found '{}'", shown(*line)));
@@ -116,7 +116,7 @@ CsvTable parse_csv(std::string_view text, const std::string& name) {
   table.first_line = lines.number + 1;
   std::size_t gap = 0;
   while ((line = lines.next())) {
-    if (trimmed(*line).empty()) {
+    if (without_blanks(*line).empty()) {
       if (!gap) gap = lines.number;
       continue;
     }

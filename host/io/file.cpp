@@ -23,12 +23,12 @@ constexpr std::size_t endless = std::size_t{1} << 30; // most bytes of a pipe or
                                               path.string(), std::generic_category().message(reason)));
 }
 
-struct Descriptor {
+struct FileToRead {
   int fd;
-  explicit Descriptor(int value) : fd(value) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
+  explicit FileToRead(int value) : fd(value) {}
+  FileToRead(const FileToRead&) = delete;
+  FileToRead& operator=(const FileToRead&) = delete;
+  ~FileToRead() {
     if (fd >= 0) ::close(fd);
   }
 };
@@ -61,7 +61,7 @@ std::string read_all(int fd, const std::filesystem::path& path) {
 } // namespace
 
 std::string read_file(const std::filesystem::path& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const FileToRead file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.fd < 0) fail(path, errno);
   const auto too_large = [&] {
     return Error(Fault::too_large,

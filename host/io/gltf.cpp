@@ -28,12 +28,12 @@ constexpr std::uint64_t most_primitives = 1000000;             // with their ins
 enum Mode : std::uint64_t { points = 0, lines = 1, line_loop = 2, line_strip = 3, triangles = 4, strip = 5, fan = 6 };
 
 /// x -> matrix x + shift.
-struct Placement {
+struct NodePlacement {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
   Vec3 shift = Vec3::Zero();
   bool moves() const { return matrix != Eigen::Matrix3d::Identity() || shift != Vec3::Zero(); }
   Vec3 operator()(const Vec3& x) const { return matrix * x + shift; }
-  Placement operator*(const Placement& inner) const { return {matrix * inner.matrix, (*this)(inner.shift)}; }
+  NodePlacement operator*(const NodePlacement& inner) const { return {matrix * inner.matrix, (*this)(inner.shift)}; }
 };
 
 Vec3 vector(const std::vector<double>& numbers) {
@@ -49,9 +49,10 @@ public:
 
   RawMesh read() {
     const auto places = roots();
-    walk(places, [&](std::uint64_t mesh, const Placement&, const std::string& what) { require_room(mesh, what); });
-    walk(places,
-         [&](std::uint64_t mesh, const Placement& place, const std::string& what) { add_instance(mesh, place, what); });
+    walk(places, [&](std::uint64_t mesh, const NodePlacement&, const std::string& what) { require_room(mesh, what); });
+    walk(places, [&](std::uint64_t mesh, const NodePlacement& place, const std::string& what) {
+      add_instance(mesh, place, what);
+    });
     if (!closed_ && !seems_balanced(mesh_.faces)) weld(mesh_);
     notes();
     return std::move(mesh_);
@@ -61,7 +62,7 @@ private:
   struct Step {
     std::uint64_t node;
     std::size_t depth;
-    Placement above;
+    NodePlacement above;
     std::string named_by;
   };
 
@@ -112,7 +113,7 @@ private:
       seen[step.node] = true;
       if (step.depth > deepest_node)
         document_.fail(Fault::file_syntax, what, fmt::format("it lies more than {} nodes deep.", deepest_node));
-      const Placement placement = step.above * placement_of(node, what);
+      const NodePlacement placement = step.above * placement_of(node, what);
       if (const Json* extensions = document_.member(node, "extensions");
           extensions && document_.member(*extensions, "EXT_mesh_gpu_instancing"))
         document_.fail(Fault::file_format, what,
@@ -120,7 +121,7 @@ private:
       if (document_.member(node, "mesh")) {
         const bool skinned = document_.member(node, "skin") != nullptr;
         skinned_ += skinned;
-        visit(document_.whole(node, "mesh", what), skinned ? Placement() : placement, what);
+        visit(document_.whole(node, "mesh", what), skinned ? NodePlacement() : placement, what);
       }
       const std::size_t first = steps.size();
       for (const Json& child : document_.list(node, "children", what)) {
@@ -132,8 +133,8 @@ private:
     }
   }
 
-  Placement placement_of(const Json& node, const std::string& what) const {
-    Placement placement;
+  NodePlacement placement_of(const Json& node, const std::string& what) const {
+    NodePlacement placement;
     if (const auto m = document_.numbers(node, "matrix", 16, what)) {
       for (const char* other : {"rotation", "scale", "translation"})
         if (document_.member(node, other))
@@ -160,7 +161,7 @@ private:
     return placement;
   }
 
-  void add_instance(std::uint64_t index, const Placement& placement, const std::string& named_by) {
+  void add_instance(std::uint64_t index, const NodePlacement& placement, const std::string& named_by) {
     const Json& object = document_.object("meshes", index, named_by);
     const std::string what = mesh_name(index);
     RawMesh part;

@@ -52,14 +52,14 @@ constexpr KnownBody known_bodies[] = {
     {"Itokawa", 0.2, 2.4e-9, true},
 };
 
-bool near(double value, double expected, double relative) {
+bool about(double value, double expected, double relative) {
   return std::fabs(value - expected) <= relative * expected;
 }
 
 // The body of a radius in km and GM in km^3/s^2, or null.
 const KnownBody* body_of(double radius, double gm) {
   const auto found = std::find_if(std::begin(known_bodies), std::end(known_bodies), [&](const KnownBody& body) {
-    return near(radius, body.radius, body.small ? 0.6 : 0.02) && near(gm, body.gm, body.small ? 0.1 : 0.01);
+    return about(radius, body.radius, body.small ? 0.6 : 0.02) && about(gm, body.gm, body.small ? 0.1 : 0.01);
   });
   return found == std::end(known_bodies) ? nullptr : &*found;
 }

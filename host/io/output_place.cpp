@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr int max_links = 40; // as Linux
 constexpr std::size_t longest_link = 1 << 16;
 
-[[noreturn]] void fail(const fs::path& path, int reason) {
+[[noreturn]] void refuse(const fs::path& path, int reason) {
   throw Error(
       Fault::cannot_write,
       fmt::format(
@@ -76,7 +76,7 @@ public:
       parts.pop_front();
       const bool last = parts.empty();
       if (place_.name.empty() || place_.name == "." || place_.name == "..") {
-        if (last) fail(path_, EISDIR);
+        if (last) refuse(path_, EISDIR);
         if (place_.name == "..") enter("..");
         continue;
       }
@@ -84,11 +84,11 @@ public:
       Descriptor there(::openat(place_.folder.get(), place_.name.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC));
       if (there.get() < 0) {
         if (last && errno == ENOENT) return std::move(place_);
-        fail(path_, errno);
+        refuse(path_, errno);
       }
-      if (::fstat(there.get(), &place_.status) != 0) fail(path_, errno);
+      if (::fstat(there.get(), &place_.status) != 0) refuse(path_, errno);
       if (S_ISLNK(place_.status.st_mode)) {
-        if (++links_ > max_links) fail(path_, ELOOP);
+        if (++links_ > max_links) refuse(path_, ELOOP);
         if (in_proc(there.get())) { // its text is not always where it leads to
           place_.magic = last;
           if (last) return std::move(place_);
@@ -101,7 +101,7 @@ public:
         parts.insert(parts.begin(), more.begin(), more.end());
         if (to.starts_with('/')) start_at(to);
       } else if (!last) {
-        if (!S_ISDIR(place_.status.st_mode)) fail(path_, ENOTDIR);
+        if (!S_ISDIR(place_.status.st_mode)) refuse(path_, ENOTDIR);
         place_.folder = std::move(there);
       }
     }
@@ -118,18 +118,18 @@ public:
 private:
   void start_at(const std::string& path) {
     place_.folder = Descriptor(::open(path.starts_with('/') ? "/" : ".", O_PATH | O_DIRECTORY | O_CLOEXEC));
-    if (place_.folder.get() < 0) fail(path_, errno);
+    if (place_.folder.get() < 0) refuse(path_, errno);
   }
 
   void enter(const char* name) {
     Descriptor next(::openat(place_.folder.get(), name, O_PATH | O_DIRECTORY | O_CLOEXEC));
-    if (next.get() < 0) fail(path_, errno);
+    if (next.get() < 0) refuse(path_, errno);
     place_.folder = std::move(next);
   }
 
   struct stat folder() const {
     struct stat status {};
-    if (::fstat(place_.folder.get(), &status) != 0) fail(path_, errno);
+    if (::fstat(place_.folder.get(), &status) != 0) refuse(path_, errno);
     return status;
   }
 
@@ -141,7 +141,7 @@ private:
     int fd = -1;
     const auto result = std::from_chars(begin, end, fd);
     if (result.ec != std::errc() || result.ptr != end) return false;
-    if (fd == place_.folder.get()) fail(path_, EBADF); // it has taken that number just now
+    if (fd == place_.folder.get()) refuse(path_, EBADF); // it has taken that number just now
     place_.descriptor = fd;
     return true;
   }
@@ -157,7 +157,7 @@ private:
   std::string text_of(int link) const {
     std::string text(longest_link, '\0');
     const ssize_t length = ::readlinkat(link, "", text.data(), text.size());
-    if (length <= 0) fail(path_, length < 0 ? errno : ENOENT);
+    if (length <= 0) refuse(path_, length < 0 ? errno : ENOENT);
     text.resize(std::size_t(length));
     return text;
   }
@@ -174,14 +174,14 @@ Descriptor::~Descriptor() {
 }
 
 OutputPlace output_place(const fs::path& path) {
-  if (path.empty()) fail(path, ENOENT);
+  if (path.empty()) refuse(path, ENOENT);
   return Walk(path).end();
 }
 
 Descriptor open_anew(const fs::path& path) {
-  if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail(path, errno);
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) refuse(path, errno);
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
-  if (file.get() < 0) fail(path, errno);
+  if (file.get() < 0) refuse(path, errno);
   return file;
 }
 

@@ -8,7 +8,7 @@
 namespace cowgpu {
 
 namespace {
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double beyond = std::numeric_limits<double>::infinity();
 }
 
 StretchWeights stretch_weights(double side_a, double side_b, double side_c, double lambda, double softening) {
@@ -25,7 +25,7 @@ StretchWeights stretch_weights(double side_a, double side_b, double side_c, doub
 double stretch_energy(const StretchWeights& w, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a;
   const double area = a.dot(ab.cross(ac)) / 2;
-  if (!(area > 0)) return infinity;
+  if (!(area > 0)) return beyond;
   const double form = w.dot[0] * (c - b).squaredNorm() + w.dot[1] * ac.squaredNorm() + w.dot[2] * ab.squaredNorm();
   return form * (w.forward / (area * area) + w.backward);
 }
@@ -82,7 +82,7 @@ void Star::set(const Vec3& x, std::span<const Vec3> ring, std::span<const Stretc
   const std::size_t count = ring.size();
   local_.resize(count);
   wedges_.resize(count);
-  double nearest = infinity;
+  double nearest = beyond;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 d = ring[i] - x, u = frame_ * d;
     local_[i] = {u[0], u[1], u[2]};
@@ -117,7 +117,7 @@ double Star::energy(double p, double q) const {
   double sum = 0;
   for (const Wedge& w : wedges_) {
     const double area = (w.area + p * w.area_p + q * w.area_q) * inverse;
-    if (!(area > w.least_area)) return infinity;
+    if (!(area > w.least_area)) return beyond;
     const double form = w.form + ps * w.form_p + qs * w.form_q + delta * w.form_delta;
     sum += form * (w.forward / (area * area) + w.backward);
   }
@@ -147,7 +147,7 @@ bool Star::newton_step(Eigen::Vector2d& to) const {
   Eigen::Vector2d gradient;
   Eigen::Matrix2d hessian;
   const double here = derivatives(gradient, hessian);
-  if (!(here < infinity)) return false;
+  if (!(here < beyond)) return false;
   // The Hessian with its eigenvalues mean +- radius made positive.
   const double mean = (hessian(0, 0) + hessian(1, 1)) / 2, half = (hessian(0, 0) - hessian(1, 1)) / 2;
   const double radius = std::sqrt(half * half + hessian(0, 1) * hessian(0, 1));
@@ -161,7 +161,7 @@ bool Star::newton_step(Eigen::Vector2d& to) const {
   step[0] = -(i0 + i1 * half) * gradient[0] - i1 * hessian(0, 1) * gradient[1];
   step[1] = -i1 * hessian(0, 1) * gradient[0] - (i0 - i1 * half) * gradient[1];
   const double length = step.norm();
-  if (!(length > 0 && length < infinity)) return false;
+  if (!(length > 0 && length < beyond)) return false;
   if (length > 0.5) step *= 0.5 / length;
   const double slope = gradient.dot(step);
   double t = 1;

@@ -15,7 +15,7 @@
 namespace cowgpu {
 
 namespace {
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 constexpr double sphere_area = 4 * std::numbers::pi;
 } // namespace
 

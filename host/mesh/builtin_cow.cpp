@@ -18,7 +18,7 @@ namespace cowgpu {
 namespace {
 
 using Index = std::uint32_t;
-using Quad = std::array<Index, 4>;
+using QuadFace = std::array<Index, 4>;
 using Vec2 = Eigen::Vector2d; // x, y in the plane of symmetry
 
 const Vec3 forward(1, 0, 0), up(0, 1, 0), right(0, 0, 1);
@@ -30,13 +30,13 @@ Vec3 in_plane(const Vec2& p, double z = 0) {
 /// Quads on the side z >= 0. A vertex with z = 0 is its own mirror image.
 struct HalfCage {
   std::vector<Vec3> vertices;
-  std::vector<Quad> quads;
+  std::vector<QuadFace> quads;
 
   Index add(const Vec3& p) {
     vertices.push_back(p);
     return static_cast<Index>(vertices.size() - 1);
   }
-  std::size_t add(const Quad& q) {
+  std::size_t add(const QuadFace& q) {
     quads.push_back(q);
     return quads.size() - 1;
   }
@@ -57,7 +57,7 @@ RawMesh mirrored(const HalfCage& half) {
   RawMesh mesh;
   constexpr Index unused = std::numeric_limits<Index>::max(); // left inside, where a limb straddles the plane
   std::vector<Index> own(half.vertices.size(), unused), image = own;
-  for (const Quad& quad : half.quads)
+  for (const QuadFace& quad : half.quads)
     for (Index v : quad) {
       if (own[v] != unused) continue;
       const Vec3& p = half.vertices[v];
@@ -114,7 +114,7 @@ Loft loft(HalfCage& cage, const std::vector<Ring>& rings) {
     const auto &back = result.rings[i], &front = result.rings[i + 1];
     auto& strip = result.quads.emplace_back();
     for (std::size_t k = 0; k + 1 < ring_points; ++k)
-      strip[k] = cage.add(Quad{back[k], back[k + 1], front[k + 1], front[k]});
+      strip[k] = cage.add(QuadFace{back[k], back[k + 1], front[k + 1], front[k]});
   }
   return result;
 }
@@ -123,7 +123,7 @@ Loft loft(HalfCage& cage, const std::vector<Ring>& rings) {
 std::array<std::size_t, 3> cap(HalfCage& cage, const std::array<Index, ring_points>& ring, const Vec2& upper,
                                const Vec2& lower, bool at_front) {
   const Index u = cage.add(in_plane(upper)), l = cage.add(in_plane(lower));
-  std::array<Quad, 3> quads = {
+  std::array<QuadFace, 3> quads = {
       {{ring[0], ring[1], ring[2], u}, {u, ring[2], ring[3], l}, {l, ring[3], ring[4], ring[5]}}};
   std::array<std::size_t, 3> result{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -168,7 +168,7 @@ public:
       return std::find_if(moved.begin(), moved.end(), [&](const auto& m) { return m.first == old; })->second;
     };
     for (const auto& [a, b] : outline())
-      if (!(cage_.on_plane(after(a)) && cage_.on_plane(after(b)))) cage_.add(Quad{a, b, after(b), after(a)});
+      if (!(cage_.on_plane(after(a)) && cage_.on_plane(after(b)))) cage_.add(QuadFace{a, b, after(b), after(a)});
     for (std::size_t q : patch_)
       for (Index& vertex : cage_.quads[q]) vertex = after(vertex);
     return *this;
@@ -198,7 +198,7 @@ Limb limb_from_quad(HalfCage& cage, std::size_t quad, const Vec3& u_axis) {
 
 /// A bump or a dent: the quad shrunk to a rim, then pushed along its normal.
 void emboss(HalfCage& cage, std::size_t quad, const Vec3& at, double radius, double height) {
-  const Quad corners = cage.quads[quad];
+  const QuadFace corners = cage.quads[quad];
   const Vec3 normal = cage.normal(quad);
   const Vec3 u_axis = cage.vertices[corners[2]] - cage.vertices[corners[1]];
   limb_from_quad(cage, quad, u_axis)

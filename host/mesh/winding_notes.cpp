@@ -92,7 +92,7 @@ private:
 };
 
 /// Shells of one kind, and their volume together.
-struct Kind {
+struct InwardCount {
   std::size_t count = 0;
   double volume = 0;
   void add(double v) { ++count, volume += v; }
@@ -125,7 +125,7 @@ std::vector<std::string> winding_notes(const ClosedSurface& surface, Monitor& mo
   const bool measured = faces.size() <= most_measured_faces;
   const double whole = volume(surface);
   Shells all(surface);
-  Kind outside, in_cavities, twice; // the first two look inwards
+  InwardCount outside, in_cavities, twice; // the first two look inwards
   std::size_t left_out = 0;
   if (all.count() > 1) {
     const double noise = volume_noise(vertices, faces), whole_area = area(surface);

@@ -18,7 +18,7 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 
 // Of the body's size: vertices so near to the ground touch it, and a point so near to a border lies on it.
-constexpr double touching = 1e-10;
+constexpr double ground_tolerance = 1e-10;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -136,10 +136,10 @@ struct Rolling {
 
   std::vector<std::size_t> touching_ground() const {
     const double height = this->height();
-    if (!(height > touching * size)) no_facet("its barycentre is not above what it stands on");
+    if (!(height > ground_tolerance * size)) no_facet("its barycentre is not above what it stands on");
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < r.size(); ++i)
-      if (down.dot(r[i]) >= height - touching * size) found.push_back(i);
+      if (down.dot(r[i]) >= height - ground_tolerance * size) found.push_back(i);
     return found;
   }
 
@@ -178,7 +178,7 @@ Attitude settle(std::span<const Vec3> vertices, const Vec3& barycentre, const Mo
     body.size = std::max(body.size, body.r.back().norm());
   }
   if (!(body.size > 0) || !std::isfinite(body.size)) no_facet("it has no size");
-  const double noise = touching * body.size;
+  const double noise = ground_tolerance * body.size;
   Attitude attitude;
   std::set<std::vector<std::size_t>> edges; // rolled over
   for (;;) {
@@ -231,7 +231,7 @@ Contact contact(std::span<const Vec3> vertices, const Vec3& barycentre, double t
     found.ground = std::min(found.ground, v.y());
     size = std::max(size, (v - barycentre).norm());
   }
-  const double noise = touching * size;
+  const double noise = ground_tolerance * size;
   std::vector<Vec2> flat; // (z, x) from the barycentre's foot: counter-clockwise about y
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Vec3& v = vertices[i];

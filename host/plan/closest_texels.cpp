@@ -8,7 +8,7 @@
 namespace cowgpu::plan {
 namespace {
 
-constexpr float nowhere = 3e18F; // as in the tree: beyond every bound, and its square finite
+constexpr float beyond_all = 3e18F; // as in the tree: beyond every bound, and its square finite
 
 std::uint32_t word(float x) {
   return std::bit_cast<std::uint32_t>(x);
@@ -16,9 +16,9 @@ std::uint32_t word(float x) {
 
 void add_child(const ClosestTree& tree, const Bvh::Node& child, std::uint32_t index, std::vector<std::uint32_t>& to) {
   const auto low = tree.local(child.low), high = tree.local(child.high);
-  for (const float x : low) to.push_back(word(std::nextafter(x, -nowhere)));
+  for (const float x : low) to.push_back(word(std::nextafter(x, -beyond_all)));
   to.push_back(child.count > 0 ? child.first : index);
-  for (const float x : high) to.push_back(word(std::nextafter(x, nowhere)));
+  for (const float x : high) to.push_back(word(std::nextafter(x, beyond_all)));
   to.push_back(child.count);
 }
 
@@ -39,7 +39,7 @@ ClosestTexels::ClosestTexels(const ClosestTree& tree) {
         add_child(tree, boxes[child], number[child], nodes);
   if (inner == 0) {
     add_child(tree, boxes[0], 0, nodes);
-    for (int k = 0; k < 8; ++k) nodes.push_back(k % 4 == 3 ? 0 : word(nowhere));
+    for (int k = 0; k < 8; ++k) nodes.push_back(k % 4 == 3 ? 0 : word(beyond_all));
   }
 
   triangles.reserve(20 * tree.faces.size());

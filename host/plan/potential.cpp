@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double pi = std::numbers::pi;
+constexpr double four_pi = 4 * std::numbers::pi;
 
 // Coefficients of a real series in J_lm, those of m < 0 following from a_l,-m = (-1)^m conj(a_lm).
 struct Set {
@@ -62,7 +62,7 @@ Set value_set(const PotentialProblem& problem, int top) {
       const Complex q = problem.moments(l, m);
       if (!std::isfinite(q.real()) || !std::isfinite(q.imag()))
         throw Error(Fault::bad_argument, fmt::format("the moment of degree {} and order {} is not finite", l, m));
-      r.at(l, m) = 4 * pi / double(2 * l + 1) * (m == 0 ? Complex(q.real()) : std::conj(q));
+      r.at(l, m) = four_pi / double(2 * l + 1) * (m == 0 ? Complex(q.real()) : std::conj(q));
     }
   return r;
 }
@@ -86,7 +86,7 @@ void add_bounds(const Set& set, int top, std::vector<double>& bounds) {
   for (int l = 0; l <= top; ++l) {
     double sum = std::norm(set(l, 0));
     for (int m = 1; m <= l; ++m) sum += 2 * std::norm(set(l, m));
-    bounds[std::size_t(l)] = std::max(bounds[std::size_t(l)], std::sqrt(sum * (2 * l + 1) / (4 * pi)));
+    bounds[std::size_t(l)] = std::max(bounds[std::size_t(l)], std::sqrt(sum * (2 * l + 1) / (four_pi)));
   }
 }
 
@@ -194,7 +194,7 @@ PotentialPoints potential_points(const PotentialProblem& problem, const Potentia
     const long double z = cosine * std::sqrt((long double)(points.q[i]));
     points.z[i] = double(z);
     points.z_rest[i] = double(z - points.z[i]);
-    points.start[i] = 1 / std::sqrt(4 * pi * ratio2[from]);
+    points.start[i] = 1 / std::sqrt(four_pi * ratio2[from]);
   }
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t last = std::min(count, begin + block) - 1; // the nearest

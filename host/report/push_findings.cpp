@@ -12,7 +12,7 @@ using namespace physics;
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
+constexpr double in_degrees = 180 / std::numbers::pi;
 
 Value finite(double value) {
   return std::isfinite(value) ? Value(value) : Value();
@@ -47,7 +47,7 @@ void add_profile(const PushOutcome& outcome, const std::optional<double>& fricti
       {"push_impulse_Ns", "impulse of the push", outcome.asked.profile->impulse(), "N s"},
       {"push_outcome", "outcome of the push", name(result.outcome)},
       {"push_tips", "push tips it over", result.outcome == Outcome::tipped},
-      {"push_peak_tilt_deg", "largest tilt under the push", result.peak_tilt * degrees, "degrees"},
+      {"push_peak_tilt_deg", "largest tilt under the push", result.peak_tilt * in_degrees, "degrees"},
       {"push_lift_time_s", "time until it lifts off", lifted ? Value(result.lift_time) : Value(), "s", "never"},
       {"push_end_time_s", "time until past the balance, or landed", lifted ? finite(result.end_time) : Value(), "s",
        lifted ? "not known" : "never"},
@@ -78,7 +78,7 @@ void add_findings(const PushOutcome& outcome, std::optional<double> friction, Fi
   const std::vector<Finding> rows = {
       {"push_direction", "direction of a push that lasts",
        std::string(plan.turns_with_body ? "turns with the body" : "stays in space")},
-      {"balance_angle_deg", "tilt from which it falls by itself", rocker.balance * degrees, "degrees"},
+      {"balance_angle_deg", "tilt from which it falls by itself", rocker.balance * in_degrees, "degrees"},
       {"inertia_about_pivot", "moment of inertia about the pivot edge", rocker.inertia, "kg m^2"},
       {"least_energy_J", "energy that tips it", rocker.least_energy(), "J"},
       {"least_impulse_Ns", "smallest impulse, of a short push", impulse, "N s"},

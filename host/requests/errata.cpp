@@ -57,7 +57,7 @@ void add_harmonic(const ManifoldSurface& surface, Backend& backend, Monitor& mon
   found.numbers.push_back(erratum_number(16, "inverted triangles", double(judge(surface, map, 32).flipped.size()), 0));
 }
 
-constexpr double flow_tolerance = 1e-6; // as `expand --of flow` has it
+constexpr double expand_tolerance = 1e-6; // as `expand --of flow` has it
 
 // At t = 0.2, all sheets over a direction with their signs, extrapolated over refinements of the mesh.
 Comparison refined_monopole(const ClosedSurface& cow, double table, Backend& backend, Monitor& monitor) {
@@ -66,7 +66,7 @@ Comparison refined_monopole(const ClosedSurface& cow, double table, Backend& bac
   options.grid_degree = 256;
   const auto flow = backend.distance_flow(cow.vertices(), cow.faces());
   const SheetExpansion sheets =
-      expand_sheets(cow.mesh(), paper::flow_time, 2, flow_tolerance, options, *flow, backend, monitor);
+      expand_sheets(cow.mesh(), paper::flow_time, 2, expand_tolerance, options, *flow, backend, monitor);
   return erratum_number(15, "monopole of f_r at t = 0.2, mesh refined",
                         sheets.expansion.coefficients.at(0, 0, 0).real(), table, sheets.uncertainty[0][0]);
 }
