@@ -16,7 +16,7 @@
 namespace cowgpu {
 namespace {
 
-constexpr std::size_t most_regions = 1 << 16;
+constexpr std::size_t regions_at_once = 1 << 16;
 constexpr std::uint64_t most_regions = 20'000'000;
 
 std::array<Vec3, 3> corners(const Vec3& a = Vec3::Zero()) {
@@ -123,7 +123,7 @@ private:
     std::vector<Region> waiting = seeds_;
     while (!waiting.empty()) {
       // Depth first, in batches: what is found early rules out more.
-      const std::size_t count = std::min(most_regions, waiting.size());
+      const std::size_t count = std::min(regions_at_once, waiting.size());
       std::vector<Region> now(waiting.end() - std::ptrdiff_t(count), waiting.end());
       waiting.resize(waiting.size() - count);
       check_stop(monitor_);

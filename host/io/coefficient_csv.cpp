@@ -3,6 +3,7 @@
 #include "host/io/coefficient_formats.hpp"
 #include "host/io/coefficient_metadata.hpp"
 #include "host/io/csv_table.hpp"
+#include "host/io/file_format.hpp"
 #include "host/io/number.hpp"
 #include "host/io/shown.hpp"
 #include "host/sphere_transform.hpp"

@@ -2,6 +2,7 @@
 #include "host/io/coefficient_file.hpp"
 #include "host/io/coefficient_formats.hpp"
 #include "host/io/coefficient_metadata.hpp"
+#include "host/io/file_format.hpp"
 #include "host/io/length_unit.hpp"
 #include "host/io/netcdf.hpp"
 #include "host/io/shown.hpp"
