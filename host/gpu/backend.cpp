@@ -67,6 +67,11 @@ public:
     return gpu::exterior_potential(gpu_, iteration_budget_, problem);
   }
 
+  // Until its own kernel is there.
+  std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem) const override {
+    return make_cpu_backend(0)->polyhedron(problem);
+  }
+
   Image render(const RenderScene& scene, Monitor& monitor) override {
     return gpu::watched(*gpu_, monitor, [&] { return gpu::render(*gpu_, iteration_budget_, scene, monitor); });
   }
