@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace cowgpu::cpu::HWY_NAMESPACE {
 
-using Rows = PolyhedronRows;
+using Rows = plan::PolyhedronRows;
 
 // A vector of points beside a patch: sums of the patch, and what is known about its corners and edges.
 template <class Tag, class Series, bool Second>
@@ -44,8 +44,8 @@ struct PatchSum {
   T touching;
   double* rows; // of the sums, at the first lane
   std::size_t stride;
-  std::size_t points; // lanes that are points
-  bool any_touched = false;
+  std::size_t points;                         // lanes that are points
+  bool any_near = false, any_touched = false; // a lane is next to an edge, or on one
 
   static HWY_INLINE Vector load(const T* from) { return hn::Load(Tag(), from); }
   static HWY_INLINE Vector set(T value) { return hn::Set(Tag(), value); }
@@ -122,7 +122,10 @@ struct PatchSum {
       if (hn::AllTrue(tag, hn::Gt(sum, set(T(5.1) * edge.length)))) {
         logarithm = twice_atanh<Series>(tag, hn::Div(length, sum));
       } else {
-        if (HWY_UNLIKELY(!hn::AllTrue(tag, hn::Ge(below, set(edge.length / 64))))) below = near_excess(edge, below, i);
+        if (HWY_UNLIKELY(!hn::AllTrue(tag, hn::Ge(below, set(edge.length / 64))))) {
+          below = near_excess(edge, below, i);
+          any_near = true;
+        }
         logarithm = log_quotient<Series>(tag, above, below);
       }
       hn::Store(logarithm, tag, sides[i].logarithm);
@@ -193,14 +196,12 @@ struct PatchSum {
       const Vector out = hn::IfThenElseZero(on, load(sides[face.edges[k]].logarithm));
       std::size_t at = 0;
       for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = i; j < 3; ++j) {
-          const T both = (face.normal[i] * face.outward[k][j] + face.normal[j] * face.outward[k][i]) / 2;
-          hessian[at] = hn::NegMulAdd(set(both), out, hessian[at]);
-          ++at;
-        }
+        for (std::size_t j = i; j < 3; ++j, ++at)
+          hessian[at] = hn::NegMulAdd(set(face.normal[i] * face.outward[k][j]), out, hessian[at]);
     }
   }
 
+  // Next to an edge the angle is ill conditioned, and whether the point is on the face's plane has to be looked at.
   // sum[row]: V twice, -grad V, w, dd V.
   HWY_INLINE void add_faces(Vector* sum) {
     const Tag tag;
@@ -214,7 +215,7 @@ struct PatchSum {
           hn::MulAdd(da, load(bc.excess), hn::MulAdd(db, load(ca.excess), hn::Mul(dc, load(ab.excess))));
       const Vector below = hn::NegMulAdd(hn::Mul(hn::Mul(four, da), db), dc, corner);
       const Vector above = hn::Mul(set(face.four_areas), height);
-      const Vector angle = HWY_LIKELY(hn::AllTrue(tag, hn::Lt(hn::Abs(above), hn::Mul(below, fifth))))
+      const Vector angle = HWY_LIKELY(!any_near && hn::AllTrue(tag, hn::Lt(hn::Abs(above), hn::Mul(below, fifth))))
                                ? twice_atan<Series>(tag, hn::Div(above, below))
                                : near_angle(face, height, above, below);
       const Vector la = load(ab.logarithm), lb = load(bc.logarithm), lc = load(ca.logarithm);

@@ -20,13 +20,6 @@ enum class SumDigits {
   nine, ///< logarithms and angles to 2e-11, a tenth faster
 };
 
-/// Rows of the sums: V, grad V, w/4pi, then dd V (xx, xy, xz, yy, yz, zz), its jump, and on_edge.
-struct PolyhedronRows {
-  static constexpr std::size_t value = 0, gradient = 1, winding = 4, hessian = 5, jump = 11, on_edge = 17;
-  /// Rows without second derivatives, and with them.
-  static constexpr std::size_t first = 5, second = 18;
-};
-
 /// What is summed.
 struct PolyhedronTerms {
   /// Rows of dd V, jump and on_edge too. dd V is the mean of both sides' limits on faces, and leaves out the edges a point is
@@ -49,7 +42,7 @@ private:
   std::vector<Line> lines_;
 };
 
-/// Adds what the patches `which` make at `count` points (a multiple of polyhedron_group) to sums[row][count]. points[3][count]
+/// Adds what the patches `which` make at `count` points (a multiple of polyhedron_group) to sums[row][count], the rows of plan::PolyhedronRows. points[3][count]
 /// in units, of the mesh's origin. The sums over a patch are formed in Real, those over patches in double precision, in the
 /// order of `which`. In single precision errors are some 1e-7 of each patch's own part, and `digits` means nothing.
 void sum_patches(const plan::PolyhedronPatches<double>& patches, std::span<const std::uint32_t> which,

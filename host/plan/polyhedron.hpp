@@ -50,6 +50,14 @@ struct PatchFaces {
   std::span<const std::uint8_t> sharp;   ///< of sharp_edges(); empty where no second derivatives are asked for
 };
 
+/// Rows of the sums at points: V, grad V, w/4pi, then dd V (xx, xy, xz, yy, yz, zz), its jump, and on_edge (both are told where
+/// they are summed: host/cpu/polyhedron_kernel.hpp).
+struct PolyhedronRows {
+  static constexpr std::size_t value = 0, gradient = 1, winding = 4, hessian = 5, jump = 11, on_edge = 17;
+  /// Rows without second derivatives, and with them.
+  static constexpr std::size_t first = 5, second = 18;
+};
+
 /// Patches of a closed surface. Normals are right to the rounding of Real, of needles too: of a face whose height is the part
 /// q of its longest edge they err by 1e-34/q in double precision.
 template <class Real>
