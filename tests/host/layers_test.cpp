@@ -75,6 +75,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> nouns = {
     {"potential", {"memory_need", "monitor", "multipoles", "run_report", "types"}},
     {"polyhedron", {"memory_need", "monitor", "potential", "run_report", "types"}},
     {"render", {"error", "number", "types"}},
+    {"mesh_values", {"error", "types"}},
 };
 
 // Headers of host/ that only some rooms may see.
