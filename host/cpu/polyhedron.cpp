@@ -2,6 +2,7 @@
 
 #include "host/clock.hpp"
 #include "host/cpu/moments.hpp"
+#include "host/cpu/polyhedron_fast.hpp"
 #include "host/cpu/polyhedron_kernel.hpp"
 #include "host/cpu/potential.hpp"
 #include "host/parallel.hpp"
@@ -123,7 +124,9 @@ private:
 } // namespace
 
 std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem, unsigned threads) {
-  return std::make_unique<CpuPolyhedron>(problem, threads);
+  auto direct = std::make_unique<CpuPolyhedron>(problem, threads);
+  if (problem.tolerance == 0) return direct;
+  return faster_polyhedron(problem, threads, std::move(direct));
 }
 
 } // namespace cowgpu::cpu
