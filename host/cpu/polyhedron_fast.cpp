@@ -31,8 +31,8 @@ constexpr double farthest = 0x1p100;
 struct Body {
   Body(const PolyhedronProblem& problem, const plan::FastSettings& settings, unsigned threads, Monitor& monitor)
       : unit(plan::polyhedron_unit(problem.vertices)), touching(plan::touching_distance(problem.vertices) / unit),
-        translations(settings.order), sources(problem.vertices, problem.faces, unit, plan::largest_tree_leaf,
-                                              translations, threads, monitor) {
+        translations(settings.order),
+        sources(problem.vertices, problem.faces, unit, plan::largest_tree_leaf, translations, threads, monitor) {
     std::vector<std::uint32_t> starts;
     std::vector<Vec3> centres;
     for (const std::uint32_t leaf : sources.leaves()) {
@@ -178,7 +178,8 @@ PolyhedronValues FastPolyhedron::at(std::span<const Vec3> points, Monitor& monit
   double setup = seconds_since(start), near_faces = 0;
   if (!near.empty()) {
     plan::PlaceTree targets(
-        near.size(), [&](std::size_t i) { return Vec3(points[near[i]] / body->unit); }, plan::largest_tree_leaf, threads_);
+        near.size(), [&](std::size_t i) { return Vec3(points[near[i]] / body->unit); }, plan::largest_tree_leaf,
+        threads_);
     std::vector<Vec3> sorted(near.size());
     for (std::size_t i = 0; i < near.size(); ++i) {
       targets.order[i] = near[targets.order[i]];

@@ -80,8 +80,8 @@ void FarField::gather(const PlaceTree& targets, const TaskPairs& pairs) {
   for (int p = 0; p <= order; ++p) {
     shifts_.clear();
     for (const CellPair& pair : pairs.to_locals[std::size_t(p)])
-      shifts_.push_back({sources_->multipoles(pair.source), local(pair.target),
-                         to[pair.target].centre - from[pair.source].centre});
+      shifts_.push_back(
+          {sources_->multipoles(pair.source), local(pair.target), to[pair.target].centre - from[pair.source].centre});
     translations_->add(Translation::multipole_to_local, p, shifts_, room_);
   }
   // Level by level, so that many go together.

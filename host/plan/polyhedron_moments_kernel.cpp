@@ -103,7 +103,8 @@ HWY_INLINE void add_degree(const FaceGroup* groups, std::size_t count, int l, co
   }
 }
 
-void add_some(const FaceGroup* groups, std::size_t count, const Vec3& centre, int order, double* room, double* moments) {
+void add_some(const FaceGroup* groups, std::size_t count, const Vec3& centre, int order, double* room,
+              double* moments) {
   const std::size_t width = moment_groups * face_group, row = 2 * std::size_t(order + 3) * width;
   std::fill(room, room + 6 * row, 0.0);
   Row now[3] = {{room, width}, {room + row, width}, {room + 2 * row, width}};

@@ -12,7 +12,8 @@ constexpr int more_degrees = 4; // of locals above P, whose parts are summed; th
 constexpr int least_order = 2;
 
 // binomial[j][l] = C(l + j, l)
-using Binomials = std::array<std::array<double, largest_expansion_order + 1>, largest_expansion_order + more_degrees + 1>;
+using Binomials =
+    std::array<std::array<double, largest_expansion_order + 1>, largest_expansion_order + more_degrees + 1>;
 const Binomials& binomials() {
   static const Binomials table = [] {
     Binomials made{};
@@ -63,7 +64,7 @@ std::optional<FarPair> far_pair(const PolyhedronSources& sources, std::uint32_t 
   of_target[0] = 1;
   for (int j = 1; j <= top + more_degrees; ++j) of_target[std::size_t(j)] = of_target[std::size_t(j - 1)] * y;
   if (norms[0] * u * of_target[std::size_t(top)] * y > tau) return {}; // the first term alone
-  std::array<double, largest_expansion_order + 1> of_source; // N_l/d^(l+1)
+  std::array<double, largest_expansion_order + 1> of_source;           // N_l/d^(l+1)
   double inverse = u;
   for (int l = 0; l <= top; ++l, inverse *= u) of_source[std::size_t(l)] = norms[l] * inverse;
   const auto of_degree = [&](int j) {
@@ -90,9 +91,8 @@ std::optional<FarPair> far_pair(const PolyhedronSources& sources, std::uint32_t 
 }
 
 std::span<const CellPair> TaskPairs::of_leaf(const std::vector<CellPair>& of, std::uint32_t leaf) {
-  const auto [begin, end] =
-      std::equal_range(of.begin(), of.end(), CellPair{0, leaf},
-                       [](const CellPair& a, const CellPair& b) { return a.target < b.target; });
+  const auto [begin, end] = std::equal_range(of.begin(), of.end(), CellPair{0, leaf},
+                                             [](const CellPair& a, const CellPair& b) { return a.target < b.target; });
   return {begin, end};
 }
 
@@ -122,8 +122,7 @@ void find_pairs(const PolyhedronSources& sources, const PlaceTree& targets, std:
       continue;
     }
     // Few points that lie apart: their cell's ball holds the faces that a point of it does not see near.
-    if (target.leaf() && target.radius > 1.5 * source.radius &&
-        source.count() * 12 > harmonics(sources.order())) {
+    if (target.leaf() && target.radius > 1.5 * source.radius && source.count() * 12 > harmonics(sources.order())) {
       double nearest2 = std::numeric_limits<double>::infinity();
       for (const Vec3& point : points.subspan(target.begin, target.count()))
         nearest2 = std::min(nearest2, (point - source.centre).squaredNorm());

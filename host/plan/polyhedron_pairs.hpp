@@ -13,8 +13,8 @@ namespace cowgpu::plan {
 
 /// How much of A one pair may leave out.
 struct PairTolerance {
-  double tau = 0;    ///< for a target leaf near the body; larger cells may leave out (places/largest leaf)^(-1/4) of it
-  double reach = 1;  ///< from the body's origin; beyond it tau falls as its square over the distance's
+  double tau = 0;   ///< for a target leaf near the body; larger cells may leave out (places/largest leaf)^(-1/4) of it
+  double reach = 1; ///< from the body's origin; beyond it tau falls as its square over the distance's
   std::uint32_t largest_leaf = 64; ///< of the targets
 };
 
@@ -41,10 +41,10 @@ struct CellPair {
 /// What happens in one task: a subtree of the points, whose cells are first ... last - 1.
 struct TaskPairs {
   std::uint32_t first = 0, last = 0;
-  std::vector<std::vector<CellPair>> to_locals;  ///< [order]
-  std::vector<CellPair> at_points;               ///< multipoles at each point of a leaf; leaves ascend
-  std::vector<CellPair> near;                    ///< a leaf's faces at the points of a leaf; leaves ascend
-  std::vector<double> bound;                     ///< [cell - first]: of A, at any of its points
+  std::vector<std::vector<CellPair>> to_locals; ///< [order]
+  std::vector<CellPair> at_points;              ///< multipoles at each point of a leaf; leaves ascend
+  std::vector<CellPair> near;                   ///< a leaf's faces at the points of a leaf; leaves ascend
+  std::vector<double> bound;                    ///< [cell - first]: of A, at any of its points
   double largest_bound = 0;
   std::uint64_t near_faces = 0; ///< pairs of a face and a point in `near`
 

@@ -73,12 +73,13 @@ struct PolyhedronSources::Reaches {
 PolyhedronSources::PolyhedronSources(std::span<const Vec3> vertices, std::span<const Face> faces, double unit,
                                      std::uint32_t largest_leaf, const Translations& translations, unsigned threads,
                                      Monitor& monitor)
-    : tree_(faces.size(),
-            [&](std::size_t i) {
-              const auto& [a, b, c] = faces[i];
-              return Vec3((vertices[a] / unit + vertices[b] / unit + vertices[c] / unit) / 3);
-            },
-            largest_leaf, threads),
+    : tree_(
+          faces.size(),
+          [&](std::size_t i) {
+            const auto& [a, b, c] = faces[i];
+            return Vec3((vertices[a] / unit + vertices[b] / unit + vertices[c] / unit) / 3);
+          },
+          largest_leaf, threads),
       order_(translations.order()) {
   std::vector<TreeCell>& cells = tree_.cells;
   multipoles_.resize(cells.size() * densities * harmonics(order_));
@@ -162,7 +163,8 @@ void PolyhedronSources::add_subtree(const Surface& surface, std::uint32_t top, c
     one.radius = reach.radius * (1 + 1e-14);
     reach_[cell] = reach.moment;
     if (one.leaf()) {
-      add_face_moments(own, one.centre, order_, room.front().values, &multipoles_[cell * densities * harmonics(order_)]);
+      add_face_moments(own, one.centre, order_, room.front().values,
+                       &multipoles_[cell * densities * harmonics(order_)]);
     } else {
       const std::size_t level = one.depth - cells[top].depth;
       if (levels.size() <= level) levels.resize(level + 1);

@@ -21,8 +21,8 @@ namespace cowgpu::plan {
 class PolyhedronSources {
 public:
   /// `translations` of the order that multipoles are to have.
-  PolyhedronSources(std::span<const Vec3> vertices, std::span<const Face> faces, double unit, std::uint32_t largest_leaf,
-                    const Translations& translations, unsigned threads, Monitor& monitor);
+  PolyhedronSources(std::span<const Vec3> vertices, std::span<const Face> faces, double unit,
+                    std::uint32_t largest_leaf, const Translations& translations, unsigned threads, Monitor& monitor);
 
   int order() const { return order_; }
   const PlaceTree& tree() const { return tree_; } ///< of the faces' centroids; radii are those of their corners

@@ -16,10 +16,10 @@ inline constexpr std::uint32_t tree_group = 8;
 
 struct TreeCell {
   Vec3 centre = Vec3::Zero();
-  double radius = 0;               ///< of the ball about the centre that holds the places
+  double radius = 0;                ///< of the ball about the centre that holds the places
   std::uint32_t begin = 0, end = 0; ///< in PlaceTree::order
-  std::uint32_t right = 0;         ///< the second child; the first one is the next cell. 0: a leaf
-  std::uint32_t last = 0;          ///< behind the last cell of its subtree
+  std::uint32_t right = 0;          ///< the second child; the first one is the next cell. 0: a leaf
+  std::uint32_t last = 0;           ///< behind the last cell of its subtree
   std::uint32_t depth = 0;
   bool leaf() const { return right == 0; }
   std::uint32_t count() const { return end - begin; }

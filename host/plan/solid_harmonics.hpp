@@ -30,8 +30,8 @@ struct HarmonicFactors {
   using Square = std::array<std::array<T, largest_expansion_order + 2>, largest_expansion_order + 2>; // [l][m]
 
   std::array<double, largest_expansion_order + 2> diagonal; ///< R_mm = diagonal (x + i y) R_(m-1)(m-1)
-  Square<double> rise, fall; ///< R_lm = rise z R_(l-1)m - fall r^2 R_(l-2)m, m < l
-  Square<double> norm;       ///< R_lm = norm rho_lm, with rho_lm = r^l P_lm e^(i m phi)/(l+m)!
+  Square<double> rise, fall;                                ///< R_lm = rise z R_(l-1)m - fall r^2 R_(l-2)m, m < l
+  Square<double> norm; ///< R_lm = norm rho_lm, with rho_lm = r^l P_lm e^(i m phi)/(l+m)!
 
   /// d/dz R_lm = along R_(l-1)m; with C and S, where m > 0, in terms of degree l - 1,
   ///   d/dx C_m = down C_(m-1) - up C_(m+1),     d/dx S_m = down S_(m-1) - up S_(m+1),

@@ -19,7 +19,8 @@ template <class Value>
 void add_blocks(std::vector<Translations::Block>& blocks, std::vector<double>& matrix, const std::vector<int>& rows,
                 const std::vector<int>& outputs, const std::vector<int>& columns, int first, int stride,
                 const Value& value) {
-  const int count = int(rows.size()), parts = (count + Translations::Block::most_rows - 1) / Translations::Block::most_rows;
+  const int count = int(rows.size()),
+            parts = (count + Translations::Block::most_rows - 1) / Translations::Block::most_rows;
   for (int part = 0, at = 0; part < parts; ++part) {
     const int size = (count - at) / (parts - part);
     Translations::Block block{};
@@ -65,7 +66,8 @@ void Translations::add_exchange(int l) {
         if (vanish) columns.push_back(least);
         const std::vector<double>& matrix = (sine ? factors.sines : factors.cosines)[std::size_t(l)];
         Exchange& to = exchanges_[std::size_t(l)];
-        add_blocks(upright ? to.upright : to.flat, exchange_matrix_, rows, outputs, columns, (sine ? l : 0) + columns[0], 2,
+        add_blocks(upright ? to.upright : to.flat, exchange_matrix_, rows, outputs, columns,
+                   (sine ? l : 0) + columns[0], 2,
                    [&](int m, int k) { return vanish ? 0 : matrix[std::size_t(m * (l + 1) + k)]; });
       }
 }
@@ -84,16 +86,18 @@ auto Translations::make_shift(Translation kind, int order) const -> Shift {
         rows.push_back(l);
         outputs.push_back(int(sine > 0 ? sine_index(l, m) : cosine_index(l, m)));
       }
-      add_blocks(shift.blocks, shift.matrix, rows, outputs, rows, upright_index(order_, m, sine > 0), 1, [&](int j, int l) {
-        const auto a = [&](int degree) {
-          return factors.norm[std::size_t(degree)][std::size_t(m)] / std::sqrt(m > 0 ? 2. : 1.);
-        };
-        const auto odd = [](int power) { return power % 2 != 0 ? -1. : 1.; };
-        if (kind == Translation::multipole_to_local) return odd(j + m) * (factorial[std::size_t(l + j)] / a(l) / a(j));
-        if (kind == Translation::multipole_to_multipole)
-          return l <= j ? odd(j + l) * (a(j) / a(l) / factorial[std::size_t(j - l)]) : 0;
-        return l >= j ? a(l) / a(j) / factorial[std::size_t(l - j)] : 0;
-      });
+      add_blocks(shift.blocks, shift.matrix, rows, outputs, rows, upright_index(order_, m, sine > 0), 1,
+                 [&](int j, int l) {
+                   const auto a = [&](int degree) {
+                     return factors.norm[std::size_t(degree)][std::size_t(m)] / std::sqrt(m > 0 ? 2. : 1.);
+                   };
+                   const auto odd = [](int power) { return power % 2 != 0 ? -1. : 1.; };
+                   if (kind == Translation::multipole_to_local)
+                     return odd(j + m) * (factorial[std::size_t(l + j)] / a(l) / a(j));
+                   if (kind == Translation::multipole_to_multipole)
+                     return l <= j ? odd(j + l) * (a(j) / a(l) / factorial[std::size_t(j - l)]) : 0;
+                   return l >= j ? a(l) / a(j) / factorial[std::size_t(l - j)] : 0;
+                 });
     }
   return shift;
 }

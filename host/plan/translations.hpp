@@ -74,9 +74,9 @@ public:
   std::span<const Exchange> exchanges() const { return exchanges_; }
   const double* exchange_matrix() const { return exchange_matrix_.data(); }
   const Shift& shift(Translation kind, int order) const {
-    return kind == Translation::multipole_to_local        ? to_locals_[std::size_t(order)]
+    return kind == Translation::multipole_to_local       ? to_locals_[std::size_t(order)]
            : kind == Translation::multipole_to_multipole ? between_multipoles_
-                                                          : between_locals_;
+                                                         : between_locals_;
   }
 
 private:
