@@ -325,6 +325,27 @@ for arguments in (
         assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
 found["law"] = "levity"
 refuses(potential, found, "a law of no kind")
+surface = load_schema("surface")
+with tempfile.TemporaryDirectory() as folder:
+    points = os.path.join(folder, "points.csv")
+    with open(points, "w", encoding="utf-8") as file:
+        file.write("x,y,z\n0,0,0\n30,0,0\n0.5,0.1,0\n")
+    for arguments in (
+        ["builtin:cow@0"],
+        ["builtin:cow@0", "--length", "2m", "--density", "1g/cm3", "--period", "1h", "--at", "vertices", "--height", "1cm"],
+        ["builtin:cow@0", "--at", points, "--tolerance", "0"],
+        ["builtin:box:1,2,3", "--omega", "0.5", "--spin", "0,1,1", "--guarantee"],
+        ["builtin:box", "--length-unit", "km", "--mass", "1e12kg"],
+    ):
+        found = output_of("surface", *arguments, "--device", "cpu", "--json")
+        jsonschema.validate(found, surface)
+        assert set(found) <= set(surface["properties"])
+        assert ("spin_rate" in found) is ("--period" in arguments or "--omega" in arguments)
+        assert ("slopes" in found) is (points not in arguments)
+        for table in ("ranges", "slopes"):
+            assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
+found["radius"] = -1
+refuses(surface, found, "a negative radius")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 reproduce = load_schema("reproduce")
 with tempfile.TemporaryDirectory() as folder:

@@ -85,14 +85,13 @@ physics::Findings solve(const PhysicsCall& call, const Options& options, const C
   request.exact = options.exact;
   request.inside_exact = options.inside == "exact";
   if (file) request.extra_bytes = potential_file_bytes(count_places(request.places));
-  // The closed form is computed in 80-bit numbers, which no device has.
+  // The closed form of few points is computed in 80-bit numbers, which no device has.
   std::string note;
   const auto backend = options.exact ? make_cpu_backend(common.threads) : open_backend(common, &note);
   if (options.exact && common.device != "auto" && common.device != "cpu")
-    note =
-        fmt::format("--device {} is not used: the closed form of the polyhedron is computed in 80-bit arithmetic, on "
-                    "the CPU",
-                    common.device);
+    note = fmt::format("--device {} is not used: the closed form of the polyhedron is computed on the CPU, in 80-bit "
+                       "arithmetic unless there are many points",
+                       common.device);
   if (!note.empty()) request.notes.push_back(note);
   if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
   ConsoleMonitor monitor(common.style());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/io/potential_file.hpp"
+#include "host/physics/body_field.hpp"
 #include "host/physics/findings.hpp"
 #include "host/physics/potential.hpp"
 #include "host/sphere_grid.hpp"
@@ -35,12 +36,13 @@ struct PotentialResult {
   std::optional<SphereGrid> grid; ///< grid of a sphere, its points ring by ring
   double sphere_radius = 0;       ///< radius of that sphere
   PotentialField field;
-  std::vector<std::uint8_t> exact;                          ///< 1 where it is the closed form's; empty: nowhere
-  std::vector<double> density;                              ///< where exact
-  std::size_t exact_points = 0, far_points = 0;             ///< by the polyhedron; where its series was better
-  double exact_error = 0;                                   ///< estimated, the largest of these points
-  double nearest = std::numeric_limits<double>::infinity(); ///< nearest point of the series, in radii
-  std::string device;                                       ///< what computed it, in words
+  std::vector<std::uint8_t> exact;                           ///< 1 where it is the closed form's; empty: nowhere
+  std::vector<double> density;                               ///< where exact
+  std::size_t exact_points = 0, far_points = 0;              ///< by the polyhedron; where its series was better
+  physics::FieldSum exact_sum = physics::FieldSum::extended; ///< how the closed form was summed
+  double exact_error = 0;                                    ///< estimated, the largest of these points
+  double nearest = std::numeric_limits<double>::infinity();  ///< nearest point of the series, in radii
+  std::string device;                                        ///< what computed it, in words
 
   bool radius_known() const { return radius_note.empty(); }
 };

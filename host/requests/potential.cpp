@@ -2,7 +2,7 @@
 
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
-#include "host/physics/polyhedron.hpp"
+#include "host/physics/body_field.hpp"
 #include "host/report/result.hpp"
 #include "host/requests/memory.hpp"
 
@@ -20,6 +20,16 @@ using namespace physics;
 namespace {
 
 constexpr int usual_degree = 32;
+
+// Pairs of faces and points that the closed form is summed for in 80-bit arithmetic, so that all the digits shown are right and
+// the error told is as small as they promise: seconds. Beyond, in double precision.
+constexpr double most_extended_pairs = 5e7;
+
+FieldSum sum_of(const Body& body, std::size_t points) {
+  double faces = double(body.surface.faces().size());
+  for (const Part& part : body.parts) faces += double(part.surface.faces().size());
+  return faces * double(points) <= most_extended_pairs ? FieldSum::extended : FieldSum::device;
+}
 
 void refuse_coefficients(const char* what, const std::string& file) {
   if (is_coefficient_file(file))
@@ -109,7 +119,11 @@ void compute(const LoadedMass& input, const PotentialRequest& request, const Mul
          outside, s.field);
   if (inside.empty()) return;
   const std::vector<Vec3> points = chosen(s.points, inside, Vec3::Zero());
-  ExactField exact = exact_field(*input.mesh, points, derivatives, threads, monitor);
+  s.exact_sum = sum_of(*input.mesh, points.size());
+  const auto cpu = make_cpu_backend(threads);
+  const BodyField closed(*input.mesh, {derivatives, s.exact_sum, threads}, *cpu);
+  check_memory(closed.memory(points.size()), *cpu, "ask for fewer points");
+  BodyFieldValues exact = closed.at(points, monitor);
   take(exact.field, inside, s.field);
   s.exact.assign(count, 0);
   for (std::size_t i = 0; i < inside.size(); ++i) s.exact[inside[i]] = exact.by_series[i] ? 0 : 1;
@@ -125,14 +139,15 @@ void apply_law(const FieldLaw& law, PotentialField& field) {
   for (SymmetricTensor& h : field.hessian) h = law.tensor(h);
 }
 
-// What computed the points: the series on a device, the closed form and its series in 80-bit numbers.
+// What computed the points: the series on a device, the closed form and its series on the CPU.
 std::string computed_by(const PotentialResult& s, const Backend& backend, unsigned threads) {
   const std::size_t closed = s.exact_points + s.far_points;
-  const std::string extended =
-      fmt::format("CPU, 80-bit arithmetic, {} threads", threads ? threads : make_cpu_backend(0)->facts().threads);
-  if (closed == s.points.size()) return extended;
+  const std::string exact =
+      fmt::format("CPU, {}, {} threads", s.exact_sum == FieldSum::extended ? "80-bit arithmetic" : "double precision",
+                  threads ? threads : make_cpu_backend(0)->facts().threads);
+  if (closed == s.points.size()) return exact;
   if (closed == 0) return device_line(backend.facts());
-  return fmt::format("series: {}; polyhedron: {}", device_line(backend.facts()), extended);
+  return fmt::format("series: {}; polyhedron: {}", device_line(backend.facts()), exact);
 }
 
 int degree_wanted(const LoadedMass& input, const PotentialRequest& request) {

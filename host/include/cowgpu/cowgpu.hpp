@@ -30,6 +30,7 @@
 #include "host/requests/roundtrip.hpp"
 #include "host/requests/spectrum.hpp"
 #include "host/requests/streamlines.hpp"
+#include "host/requests/surface_gravity.hpp"
 #include "host/requests/surface_source.hpp"
 #include "host/requests/tensors.hpp"
 #include "host/requests/tides.hpp"
