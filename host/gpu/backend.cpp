@@ -8,6 +8,7 @@
 #include "host/gpu/errors.hpp"
 #include "host/gpu/flow.hpp"
 #include "host/gpu/moments.hpp"
+#include "host/gpu/polyhedron.hpp"
 #include "host/gpu/potential.hpp"
 #include "host/gpu/render.hpp"
 #include "host/gpu/sample.hpp"
@@ -67,9 +68,8 @@ public:
     return gpu::exterior_potential(gpu_, iteration_budget_, problem);
   }
 
-  // Until its own kernel is there.
   std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem) const override {
-    return make_cpu_backend(0)->polyhedron(problem);
+    return gpu::polyhedron(gpu_, shape_, iteration_budget_, problem);
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {
