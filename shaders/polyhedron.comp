@@ -88,16 +88,18 @@ double power_of_two(double above, double below, out double scaled) {
   scaled = packDouble2x32(uvec2(b.x, b.y + (uint(k) << 20)));
   return double(k);
 }
-// ln(above/below)
-V log_quotient(V above, V below) {
+// ln((s + edge)^2/excess); where that is near 1 the quotient edge/s tells it without cancellation.
+V log_side(V s, double edge, V excess) {
+  const V above = (s + edge) * (s + edge);
   V k, scaled;
   double part;
-  k.x = power_of_two(above.x, below.x, part);
+  k.x = power_of_two(above.x, excess.x, part);
   scaled.x = part;
-  k.y = power_of_two(above.y, below.y, part);
+  k.y = power_of_two(above.y, excess.y, part);
   scaled.y = part;
-  const V z = quotient(above - scaled, above + scaled);
-  return k * 0.69314718055994530942LF + z * atanh_series(z * z);
+  const B far = greaterThan(s, V(5.1LF * edge));
+  const V z = quotient(mix(above - scaled, V(edge), far), mix(above + scaled, s, far));
+  return mix(k * 0.69314718055994530942LF, V(0), far) + z * atanh_series(z * z);
 }
 // 2 atan2(y, x); 0 where y is 0 and x is not negative
 V twice_atan2(V y, V x) {
@@ -126,11 +128,10 @@ Side side_between(Corner a, Corner b, double edge) {
   const V cx = a.y * b.z - a.z * b.y, cy = a.z * b.x - a.x * b.z, cz = a.x * b.y - a.y * b.x;
   const V area2 = cx * cx + cy * cy + cz * cz; // of the parallelogram, squared
   const B between = lessThan(cosine, V(0));
-  const V above = s + edge;
   const V plain = 2.0LF * (product + cosine), narrow = 2.0LF * quotient(area2, most(product - cosine, V(1e-36LF)));
   const V excess = most(mix(plain, narrow, between), V(1e-31LF) * (edge * edge) + 1e-36LF);
   side.excess = excess;
-  side.logarithm = edge > 0 ? log_quotient(above * above, excess) : V(0);
+  side.logarithm = log_side(s, edge, excess);
   if (SECOND != 0 && edge > 0) {
     // The foot of the height lies between the ends, or an end is touched.
     const double margin = push.touching, margin2 = margin * margin;
@@ -150,6 +151,7 @@ void main() {
   const uint rows = SECOND != 0 ? POLYHEDRON_ROWS_SECOND : POLYHEDRON_ROWS_FIRST;
   const uint to = group * rows * POLYHEDRON_LANES + lane;
   const V x = points[from], y = points[from + POLYHEDRON_LANES], z = points[from + 2 * POLYHEDRON_LANES];
+  // Sums over the body are small differences of large ones: they are added up from short sums.
   V value = V(0), gx = V(0), gy = V(0), gz = V(0), winding = V(0);
   V hxx = V(0), hxy = V(0), hxz = V(0), hyy = V(0), hyz = V(0), hzz = V(0);
   V jxx = V(0), jxy = V(0), jxz = V(0), jyy = V(0), jyz = V(0), jzz = V(0), edges = V(0);
@@ -166,101 +168,119 @@ void main() {
   uint item = own.y, at = own.z, count = 0;
   uint end = ranges[item].y;
   do {
-    const int texel = int(at) * POLYHEDRON_STEP_TEXELS;
-    const dvec2 t0 = pair(texel), t1 = pair(texel + 1), t2 = pair(texel + 2), t3 = pair(texel + 3), t4 = pair(texel + 4);
-    const dvec2 t5 = pair(texel + 5), t6 = pair(texel + 6), t7 = pair(texel + 7), t8 = pair(texel + 8);
-    const uvec4 last = texelFetch(steps, texel + 9);
-    const double nx = t1.y, ny = t2.x, nz = t2.y;
-    const double height = t8.x;
+    V short_value = V(0), short_gx = V(0), short_gy = V(0), short_gz = V(0), short_winding = V(0);
+    V short_hxx = V(0), short_hxy = V(0), short_hxz = V(0), short_hyy = V(0), short_hyz = V(0), short_hzz = V(0);
+    const uint stop = min(count + POLYHEDRON_SHORT, own.w);
+    do {
+      const int texel = int(at) * POLYHEDRON_STEP_TEXELS;
+      const dvec2 t0 = pair(texel), t1 = pair(texel + 1), t2 = pair(texel + 2), t3 = pair(texel + 3), t4 = pair(texel + 4);
+      const dvec2 t5 = pair(texel + 5), t6 = pair(texel + 6), t7 = pair(texel + 7), t8 = pair(texel + 8);
+      const uvec4 last = texelFetch(steps, texel + 9);
+      const double nx = t1.y, ny = t2.x, nz = t2.y;
+      const double height = t8.x;
 
-    Corner N;
-    N.x = t0.x - x;
-    N.y = t0.y - y;
-    N.z = t1.x - z;
-    N.distance = root(most(N.x * N.x + N.y * N.y + N.z * N.z, V(1e-36LF)));
-    const Side QN = side_between(Q, N, t8.y), NP = side_between(N, P, packDouble2x32(last.xy));
+      Corner N;
+      N.x = t0.x - x;
+      N.y = t0.y - y;
+      N.z = t1.x - z;
+      N.distance = root(most(N.x * N.x + N.y * N.y + N.z * N.z, V(1e-36LF)));
+      const Side QN = side_between(Q, N, t8.y), NP = side_between(N, P, packDouble2x32(last.xy));
 
-    const V h = nx * N.x + ny * N.y + nz * N.z;
-    const V below = P.distance * QN.excess + Q.distance * NP.excess + N.distance * PQ.excess -
-                    4.0LF * P.distance * Q.distance * N.distance;
-    const V above = t7.y * h;
-    V angle;
-    if (NEAR == 0) {
-      const V t = quotient(above, below);
-      angle = t * atan_series(t * t);
-    } else {
-      angle = mix(twice_atan2(above, below), V(0), lessThanEqual(size(h), V(push.touching)));
-    }
-    const double px = t3.x, py = t3.y, pz = t4.x, qx = t4.y, qy = t5.x, qz = t5.y, rx = t6.x, ry = t6.y, rz = t7.x;
-    const V lp = PQ.logarithm, lq = QN.logarithm, lr = NP.logarithm;
-    const V sq = qx * N.x + qy * N.y + qz * N.z, sr = rx * N.x + ry * N.y + rz * N.z;
-    const V sp = px * N.x + py * N.y + pz * N.z + height;
-    const V phi = sp * lp + sq * lq + sr * lr - h * angle;
-    value += h * phi;
-    gx += nx * phi;
-    gy += ny * phi;
-    gz += nz * phi;
-    winding += angle;
+      const V h = nx * N.x + ny * N.y + nz * N.z;
+      const V below = P.distance * QN.excess + Q.distance * NP.excess + N.distance * PQ.excess -
+                      4.0LF * P.distance * Q.distance * N.distance;
+      const V above = t7.y * h;
+      V angle;
+      if (NEAR == 0) {
+        const V t = quotient(above, below);
+        angle = t * atan_series(t * t);
+      } else {
+        angle = mix(twice_atan2(above, below), V(0), lessThanEqual(size(h), V(push.touching)));
+      }
+      const double px = t3.x, py = t3.y, pz = t4.x, qx = t4.y, qy = t5.x, qz = t5.y, rx = t6.x, ry = t6.y, rz = t7.x;
+      const V lp = PQ.logarithm, lq = QN.logarithm, lr = NP.logarithm;
+      const V sq = qx * N.x + qy * N.y + qz * N.z, sr = rx * N.x + ry * N.y + rz * N.z;
+      const V sp = px * N.x + py * N.y + pz * N.z + height;
+      const V phi = sp * lp + sq * lq + sr * lr - h * angle;
+      short_value += h * phi;
+      short_gx += nx * phi;
+      short_gy += ny * phi;
+      short_gz += nz * phi;
+      short_winding += angle;
+      if (SECOND != 0) {
+        V kp = lp, kq = lq, kr = lr;
+        if (NEAR != 0) {
+          kp -= kp * PQ.on;
+          kq -= kq * QN.on;
+          kr -= kr * NP.on;
+        }
+        const V ux = px * kp + qx * kq + rx * kr - nx * angle;
+        const V uy = py * kp + qy * kq + ry * kr - ny * angle;
+        const V uz = pz * kp + qz * kq + rz * kr - nz * angle;
+        short_hxx += nx * ux;
+        short_hxy += nx * uy;
+        short_hxz += nx * uz;
+        short_hyy += ny * uy;
+        short_hyz += ny * uz;
+        short_hzz += nz * uz;
+        if (NEAR != 0) {
+          const uint flags = last.z;
+          edges += PQ.on * double(flags / POLYHEDRON_FLAG_SHARP_PQ & 1) + QN.on * double(flags / POLYHEDRON_FLAG_SHARP_QN & 1) +
+                   NP.on * double(flags / POLYHEDRON_FLAG_SHARP_NP & 1);
+          // On the face: 2 pi inside, pi on an edge, the corner's angle at a corner (of which the two edges there tell).
+          const V margin = V(push.touching);
+          const V inside = mix(V(0), V(2.0LF * pi), lessThanEqual(size(h), margin));
+          const B out_p = lessThan(sp, -margin), out_q = lessThan(sq, -margin), out_r = lessThan(sr, -margin);
+          const B on_p = lessThanEqual(sp, margin), on_q = lessThanEqual(sq, margin), on_r = lessThanEqual(sr, margin);
+          V part = mix(inside, V(0), out_p);
+          part = mix(part, V(0), out_q);
+          part = mix(part, V(0), out_r);
+          if (t7.y == 0) part = V(0);
+          const V lines = mix(V(0), V(1), on_p) + mix(V(0), V(1), on_q) + mix(V(0), V(1), on_r);
+          part *= mix(V(1), V(0.5LF), greaterThan(lines, V(0.5LF)));
+          // The angle between two edges' normals is found by the atan2 of their cross and dot products.
+          const double cp = -(qx * rx + qy * ry + qz * rz), cq = -(rx * px + ry * py + rz * pz), cr = -(px * qx + py * qy + pz * qz);
+          const V corner = mix(mix(V(cr), V(cq), on_r), V(cp), B(on_q.x && on_r.x, on_q.y && on_r.y));
+          const V sine2 = most(1.0LF - corner * corner, V(0));
+          const V corner_angle = 0.5LF * twice_atan2(root(most(sine2, V(1e-36LF))), corner);
+          part = mix(part, mix(V(0), corner_angle, greaterThan(part, V(0))), greaterThan(lines, V(1.5LF)));
+          jxx += part * (nx * nx);
+          jxy += part * (nx * ny);
+          jxz += part * (nx * nz);
+          jyy += part * (ny * ny);
+          jyz += part * (ny * nz);
+          jzz += part * (nz * nz);
+        }
+      }
+
+      if ((last.z & POLYHEDRON_FLAG_KEEP_P) != 0) {
+        Q = N;
+        PQ = NP;
+      } else {
+        P = Q;
+        Q = N;
+        PQ = QN;
+      }
+      ++count;
+      ++at;
+      if (at == end && count < own.w) {
+        ++item;
+        at = ranges[item].x;
+        end = ranges[item].y;
+      }
+    } while (count < stop);
+    value += short_value;
+    gx += short_gx;
+    gy += short_gy;
+    gz += short_gz;
+    winding += short_winding;
     if (SECOND != 0) {
-      V kp = lp, kq = lq, kr = lr;
-      if (NEAR != 0) {
-        kp -= kp * PQ.on;
-        kq -= kq * QN.on;
-        kr -= kr * NP.on;
-      }
-      const V ux = px * kp + qx * kq + rx * kr - nx * angle;
-      const V uy = py * kp + qy * kq + ry * kr - ny * angle;
-      const V uz = pz * kp + qz * kq + rz * kr - nz * angle;
-      hxx += nx * ux;
-      hxy += nx * uy;
-      hxz += nx * uz;
-      hyy += ny * uy;
-      hyz += ny * uz;
-      hzz += nz * uz;
-      if (NEAR != 0) {
-        const uint flags = last.z;
-        edges += PQ.on * double(flags / POLYHEDRON_FLAG_SHARP_PQ & 1) + QN.on * double(flags / POLYHEDRON_FLAG_SHARP_QN & 1) +
-                 NP.on * double(flags / POLYHEDRON_FLAG_SHARP_NP & 1);
-        // On the face: 2 pi inside, pi on an edge, the corner's angle at a corner (of which the two edges there tell).
-        const V margin = V(push.touching);
-        const V inside = mix(V(0), V(2.0LF * pi), lessThanEqual(size(h), margin));
-        const B out_p = lessThan(sp, -margin), out_q = lessThan(sq, -margin), out_r = lessThan(sr, -margin);
-        const B on_p = lessThanEqual(sp, margin), on_q = lessThanEqual(sq, margin), on_r = lessThanEqual(sr, margin);
-        V part = mix(inside, V(0), out_p);
-        part = mix(part, V(0), out_q);
-        part = mix(part, V(0), out_r);
-        if (t7.y == 0) part = V(0);
-        const V lines = mix(V(0), V(1), on_p) + mix(V(0), V(1), on_q) + mix(V(0), V(1), on_r);
-        part *= mix(V(1), V(0.5LF), greaterThan(lines, V(0.5LF)));
-        // The angle between two edges' normals is found by the atan2 of their cross and dot products.
-        const double cp = -(qx * rx + qy * ry + qz * rz), cq = -(rx * px + ry * py + rz * pz), cr = -(px * qx + py * qy + pz * qz);
-        const V corner = mix(mix(V(cr), V(cq), on_r), V(cp), B(on_q.x && on_r.x, on_q.y && on_r.y));
-        const V sine2 = most(1.0LF - corner * corner, V(0));
-        const V corner_angle = 0.5LF * twice_atan2(root(most(sine2, V(1e-36LF))), corner);
-        part = mix(part, mix(V(0), corner_angle, greaterThan(part, V(0))), greaterThan(lines, V(1.5LF)));
-        jxx += part * (nx * nx);
-        jxy += part * (nx * ny);
-        jxz += part * (nx * nz);
-        jyy += part * (ny * ny);
-        jyz += part * (ny * nz);
-        jzz += part * (nz * nz);
-      }
-    }
-
-    if ((last.z & POLYHEDRON_FLAG_KEEP_P) != 0) {
-      Q = N;
-      PQ = NP;
-    } else {
-      P = Q;
-      Q = N;
-      PQ = QN;
-    }
-    ++count;
-    ++at;
-    if (at == end && count < own.w) {
-      ++item;
-      at = ranges[item].x;
-      end = ranges[item].y;
+      hxx += short_hxx;
+      hxy += short_hxy;
+      hxz += short_hxz;
+      hyy += short_hyy;
+      hyz += short_hyz;
+      hzz += short_hzz;
     }
   } while (count < own.w);
 

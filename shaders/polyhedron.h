@@ -19,6 +19,7 @@
 
 #define POLYHEDRON_LANES 32 // of a workgroup
 #define POLYHEDRON_GROUP 64 // points of a workgroup
+#define POLYHEDRON_SHORT 64      // steps of a short sum
 #define POLYHEDRON_STEP_TEXELS 10
 #define POLYHEDRON_ROWS_FIRST 5   // V twice, -grad V, w
 #define POLYHEDRON_ROWS_SECOND 18 // dd V (xx, xy, xz, yy, yz, zz), its jump, edges the point is on

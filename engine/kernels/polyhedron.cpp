@@ -79,7 +79,7 @@ Dispatches dispatches_of(const PolyhedronList& list, std::uint32_t budget, std::
 
 Polyhedron::Polyhedron(Device& device, const PolyhedronInput& input)
     : device_(device), second_(input.second), seeds_(input.seeds || !device.software()), touching_(input.touching),
-      budget_(input.iteration_budget) {
+      budget_(std::max(1U, input.iteration_budget - input.iteration_budget / 32)) {
   const std::uint64_t texels = input.steps.size_bytes() / texel_bytes;
   if (texels > device.limits().maxTexelBufferElements)
     throw Error(Failure::out_of_range, 0,

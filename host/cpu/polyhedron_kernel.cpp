@@ -126,7 +126,7 @@ struct PatchSum {
           below = near_excess(edge, below, i);
           any_near = true;
         }
-        logarithm = log_quotient<Series>(tag, above, below);
+        logarithm = log_side<Series>(tag, sum, length, below);
       }
       hn::Store(logarithm, tag, sides[i].logarithm);
       hn::Store(hn::Mul(above, below), tag, sides[i].excess);

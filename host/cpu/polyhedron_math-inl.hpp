@@ -27,15 +27,17 @@ HWY_INLINE Vector polynomial(Tag tag, const std::array<Number, N>& c, Vector w) 
   return sum;
 }
 
-/// ln(above/below) = k ln 2 + 2 atanh z, k the nearest whole number to the difference of the numbers' logarithms as their
-/// bits tell them, to 0.086: then z = (above - 2^k below)/(above + 2^k below) is below 0.2005. Of positive normal numbers,
-/// above >= below.
+/// ln((sum + edge)/below) for below = sum - edge, given apart. Where sum > 5.1 edge it is 2 atanh(edge/sum), without cancellation;
+/// else k ln 2 + 2 atanh z, k the nearest whole number to the difference of the logarithms of both as their bits tell them, to
+/// 0.086: then z = (sum + edge - 2^k below)/(sum + edge + 2^k below) is below 0.2005. Of positive normal numbers.
 template <class Series, class Tag, class Vector = hn::Vec<Tag>>
-HWY_INLINE Vector log_quotient(Tag tag, Vector above, Vector below) {
+HWY_INLINE Vector log_side(Tag tag, Vector sum, Vector edge, Vector below) {
   using T = hn::TFromD<Tag>;
   constexpr int mantissa = std::numeric_limits<T>::digits - 1;
   const hn::RebindToUnsigned<Tag> whole;
   using Whole = hn::TFromD<decltype(whole)>;
+  const Vector above = hn::Add(sum, edge);
+  const auto far = hn::Gt(sum, hn::Mul(edge, hn::Set(tag, T(5.1))));
   const auto difference = hn::Sub(hn::BitCast(whole, above), hn::BitCast(whole, below));
   const auto k = hn::ShiftRight<mantissa>(hn::Add(difference, hn::Set(whole, Whole(1) << (mantissa - 1))));
   const Vector scaled = hn::BitCast(tag, hn::Add(hn::BitCast(whole, below), hn::ShiftLeft<mantissa>(k)));
@@ -43,8 +45,9 @@ HWY_INLINE Vector log_quotient(Tag tag, Vector above, Vector below) {
   constexpr T large = T(Whole(1) << mantissa);
   const Vector power =
       hn::Sub(hn::BitCast(tag, hn::Or(k, hn::BitCast(whole, hn::Set(tag, large)))), hn::Set(tag, large));
-  const Vector z = hn::Div(hn::Sub(above, scaled), hn::Add(above, scaled));
-  return hn::MulAdd(power, hn::Set(tag, std::numbers::ln2_v<T>),
+  const Vector z =
+      hn::Div(hn::IfThenElse(far, edge, hn::Sub(above, scaled)), hn::IfThenElse(far, sum, hn::Add(above, scaled)));
+  return hn::MulAdd(hn::IfThenZeroElse(far, power), hn::Set(tag, std::numbers::ln2_v<T>),
                     hn::Mul(z, polynomial(tag, Series::atanh, hn::Mul(z, z))));
 }
 
