@@ -20,7 +20,7 @@ namespace cowgpu::physics {
 /// A surface of a body with its density: all of them by body_surfaces().
 struct DenseSurface {
   const ClosedSurface* surface;
-  double density;
+  double density, volume;
 };
 std::vector<DenseSurface> body_surfaces(const Body& body);
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <utility>
 
@@ -72,26 +73,25 @@ void add(double density, const PolyhedronValues& more, PolyhedronValues& sum) {
 class DeviceForms final : public ClosedForms {
 public:
   DeviceForms(const Body& body, const BodyFieldProblem& problem, const Backend& backend)
-      : threads_(problem.threads ? problem.threads : all_threads()) {
+      : surfaces_(body_surfaces(body)), threads_(problem.threads ? problem.threads : all_threads()) {
     check_tolerance(problem.tolerance);
     // v/R^2 of a ball is 4 pi R/3. Each surface may leave out the same part of its own.
     double whole = 0;
-    for (const DenseSurface& part : body_surfaces(body)) {
-      const double own = 4 * std::numbers::pi / 3 * ball_radius(volume(*part.surface));
+    for (const DenseSurface& part : surfaces_) {
+      const double own = 4 * std::numbers::pi / 3 * ball_radius(part.volume);
       whole += std::abs(part.density) * own;
     }
     const double share = whole > 0 ? problem.tolerance * std::min(1.0, gravity_scale(body) / whole) : 0;
     double radius = 0;
     far_reach_ = 4 * Real(middle(body).radius);
-    for (const DenseSurface& part : body_surfaces(body)) {
+    for (const DenseSurface& part : surfaces_) {
       PolyhedronProblem one{part.surface->vertices(), part.surface->faces()};
       one.derivatives = problem.derivatives;
       one.tolerance = share >= least_polyhedron_tolerance ? share : 0;
       one.guarantee = problem.guarantee;
       tolerance_ = one.tolerance;
       parts_.push_back({backend.polyhedron(one), part.density});
-      spread_ += std::abs(part.density) * spread(*part.surface);
-      radius = std::max(radius, ball_radius(volume(*part.surface)));
+      radius = std::max(radius, ball_radius(part.volume));
     }
     left_out_.gradient = tolerance_ * whole;
     left_out_.value = left_out_.gradient * radius;
@@ -99,6 +99,9 @@ public:
 
   // Beyond 3 radii the device takes each surface's multipoles (host/plan/polyhedron_call.hpp), whose errors fall as the field.
   FieldError rounding(Real reach) const override {
+    std::call_once(measured_, [&] {
+      for (const DenseSurface& part : surfaces_) spread_ += std::abs(part.density) * spread(*part.surface);
+    });
     const Real unit = units_lost * std::numeric_limits<double>::epsilon() * spread_;
     const Real x = std::min<Real>(1, far_reach_ / reach);
     return {unit * std::min(reach, far_reach_) * x, unit * x * x, unit / reach * x * x};
@@ -181,10 +184,13 @@ private:
     return at;
   }
 
+  std::vector<DenseSurface> surfaces_;
   unsigned threads_;
   std::vector<Piece> parts_;
-  double tolerance_ = 0, spread_ = 0;
-  Real far_reach_ = 0; // to the farthest vertex from a point 3 radii away
+  double tolerance_ = 0;
+  mutable std::once_flag measured_;
+  mutable double spread_ = 0; // weighed by the densities
+  Real far_reach_ = 0;        // to the farthest vertex from a point 3 radii away
   FieldError left_out_;
 };
 

@@ -95,8 +95,8 @@ private:
 } // namespace
 
 std::vector<DenseSurface> body_surfaces(const Body& body) {
-  std::vector<DenseSurface> all = {{&body.surface, body.density}};
-  for (const Part& part : body.parts) all.push_back({&part.surface, part.density});
+  std::vector<DenseSurface> all = {{&body.surface, body.density, body.volume}};
+  for (const Part& part : body.parts) all.push_back({&part.surface, part.density, part.volume});
   return all;
 }
 

@@ -33,7 +33,10 @@ Vec3 largest_principal_axis(const Body& body) {
                       "say by --spin x,y,z what it turns about"
                     : "the two largest moments of inertia of the body are equal, so that none of its axes has the "
                       "largest one: say by --spin x,y,z what it turns about");
-  return principal.axes.col(2);
+  const Vec3 axis = principal.axes.col(2);
+  Eigen::Index largest = 0;
+  axis.cwiseAbs().maxCoeff(&largest);
+  return axis[largest] < 0 ? Vec3(-axis) : axis;
 }
 
 SurfaceGravity surface_gravity(const SurfacePlaces& places, const PotentialField& field, const FieldLaw& law,

@@ -23,7 +23,7 @@ struct Spin {
   Vec3 through = Vec3::Zero(); ///< a point of the axis
 };
 
-/// The axis of the largest moment of inertia of a body about its centre of mass. Throws Error(bad_argument) where the two
+/// The axis of the largest moment of inertia of a body about its centre of mass, its largest component positive. Throws Error(bad_argument) where the two
 /// largest moments are equal: a ball and a needle have no such axis.
 Vec3 largest_principal_axis(const Body& body);
 

@@ -128,11 +128,11 @@ void add_slopes(const SurfaceGravityResult& s, Findings& found) {
   while (!bins.empty() && bins.back() == 0) bins.pop_back();
   Table table{
       "slopes", "slopes, by area", {{"from", "deg"}, {"to", "deg"}, {"area_fraction"}, {"steeper_fraction"}}, {}};
-  long double steeper = total;
   for (std::size_t b = 0; b < bins.size(); ++b) {
-    steeper -= bins[b];
-    table.rows.push_back({slope_bin * double(b), slope_bin * double(b + 1), double(bins[b] / total),
-                          double(std::max<long double>(steeper, 0) / total)});
+    long double steeper = 0; // summed, so that behind the last there is nothing
+    for (std::size_t c = b + 1; c < bins.size(); ++c) steeper += bins[c];
+    table.rows.push_back(
+        {slope_bin * double(b), slope_bin * double(b + 1), double(bins[b] / total), double(steeper / total)});
   }
   found.tables.push_back(std::move(table));
   if (overhanging > 0)
