@@ -7,6 +7,11 @@
 namespace cowgpu {
 namespace {
 
+/// In one order of sums; a library's own may depend on how it was compiled.
+double dot(const Vec3& a, const Vec3& b) {
+  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+}
+
 /// SplitMix64 (G. L. Steele, D. Lea and C. H. Flood, OOPSLA 2014).
 class Random {
 public:
@@ -32,7 +37,7 @@ public:
   Vec3 direction() {
     for (;;) {
       const Vec3 p(2 * uniform() - 1, 2 * uniform() - 1, 2 * uniform() - 1);
-      const double square = p.squaredNorm();
+      const double square = dot(p, p);
       if (square > 0.01 && square <= 1) return p / std::sqrt(square);
     }
   }
@@ -111,7 +116,7 @@ struct Crater {
   double radius = 0, depth = 0, rim = 0; ///< radius: of the unit sphere
 
   double height(const Vec3& n) const {
-    const double t2 = (2 - 2 * centre.dot(n)) / (radius * radius);
+    const double t2 = (2 - 2 * dot(centre, n)) / (radius * radius);
     if (t2 >= 4) return 0;
     if (t2 < 1) return radius * (rim - (depth + rim) * (1 - t2) * (1 + t2 / 4));
     const double left = 2 - std::sqrt(t2);
@@ -152,8 +157,8 @@ struct Ellipsoid {
   /// How far it is from the origin, which is inside, along a direction.
   double exit(const Vec3& n) const {
     const Vec3 u = n.cwiseQuotient(semi_axes), c = centre.cwiseQuotient(semi_axes);
-    const double a = u.squaredNorm(), b = u.dot(c);
-    return (b + std::sqrt(b * b + a * (1 - c.squaredNorm()))) / a;
+    const double a = dot(u, u), b = dot(u, c);
+    return (b + std::sqrt(b * b + a * (1 - dot(c, c)))) / a;
   }
 };
 
@@ -166,8 +171,8 @@ struct Lobe {
   /// move there, but held back near the neck, where r is small.
   double rise(const Vec3& p, double r) const {
     const Vec3 d = p - ellipsoid.centre, u = d.cwiseQuotient(ellipsoid.semi_axes);
-    const double parts = std::sqrt(d.squaredNorm()) / r, held = parts / std::sqrt(1 + parts * parts / 2.25);
-    return held * (rough(u / std::sqrt(u.squaredNorm())) - 1);
+    const double parts = std::sqrt(dot(d, d)) / r, held = parts / std::sqrt(1 + parts * parts / 2.25);
+    return held * (rough(u / std::sqrt(dot(u, u))) - 1);
   }
 };
 

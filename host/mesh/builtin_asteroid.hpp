@@ -14,8 +14,8 @@ namespace cowgpu {
 /// each direction, it is closed and does not intersect itself where the sphere is and does not.
 ///
 /// The same seed gives the same bits everywhere: nothing but sums, products, quotients and roots is used, and a sum of twelve
-/// uniform numbers stands for each Gaussian one. A vertex depends on its direction and the seed alone, so that finer spheres
-/// only add vertices.
+/// uniform numbers stands for each Gaussian one. A vertex depends on its direction and the seed alone, so that a finer sphere
+/// only adds vertices.
 RawMesh asteroid(RawMesh sphere, std::uint64_t seed);
 
 /// A contact binary: two lobes, each an ellipsoid made rough in the way above about its own centre, joined by a neck at the

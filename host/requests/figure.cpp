@@ -1,6 +1,7 @@
 #include "host/requests/figure.hpp"
 
 #include "host/error.hpp"
+#include "host/io/mesh_values_read.hpp"
 #include "host/mass/mass_moments.hpp"
 #include "host/physics/tip.hpp"
 #include "host/requests/surface_source.hpp"
@@ -126,17 +127,26 @@ plot::Canvas draw(const Drawing& on, std::vector<std::string>& left_out) {
   }
 }
 
+// Values that are in a file, on the mesh.
+plot::Canvas of_values(const FigureRequest& request, Backend& backend, Monitor& monitor) {
+  MeshValues values = read_mesh_values(request.values);
+  put_on(values, request.mesh.vertices, request.mesh.faces);
+  return figures::surface_values_figure(request.format, values, request.colour, request.views, backend, monitor);
+}
+
 bool of_one_map(FigureKind kind) {
   return kind == FigureKind::orders || kind == FigureKind::components || kind == FigureKind::definition;
 }
 
 } // namespace
 
-bool lines_alone(FigureKind kind) {
-  return kind == FigureKind::spectra || kind == FigureKind::definition || kind == FigureKind::streamlines;
+bool can_be_svg(FigureKind kind) {
+  return kind == FigureKind::spectra || kind == FigureKind::definition || kind == FigureKind::streamlines ||
+         kind == FigureKind::surface;
 }
 
 FigureResult make_figure(FigureRequest request, Backend& backend, Monitor& monitor) {
+  if (request.kind == FigureKind::surface) return {of_values(request, backend, monitor), {}};
   const ExpansionChoice& choice = request.expansions;
   if (of_one_map(request.kind) && request.results.empty() && (choice.maps.size() != 1 || choice.mass))
     throw Error(Fault::bad_argument, "this figure is of one map: harmonic, stretch, smooth or flow");
