@@ -52,10 +52,6 @@ FigureRequest request_of(const Options& options) {
     throw Error(Fault::bad_argument, "--view: only the figure 'surface' is drawn from several sides; name one");
   for (const std::string& view : options.views) request.views.push_back(parse_view(view));
   if (!request.views.empty()) request.view = request.views.front();
-  if (surface && options.values.empty())
-    throw Error(Fault::bad_argument,
-                "the figure 'surface' shows values that are in a file: name it with --values FILE.csv, as "
-                "`cowgpu surface MESH -o FILE.csv` writes it");
   if (!surface && (!options.values.empty() || !options.colour.empty()))
     throw Error(Fault::bad_argument, "--values and --colour are about the figure 'surface'");
   request.values = options.values;
@@ -85,7 +81,13 @@ void run(const Options& options, const Common& common) {
   AtomicFile file(options.output);
   auto backend = open_backend(common, nullptr);
   ConsoleMonitor monitor(common.style());
-  request.mesh = load_mesh(options.mesh);
+  if (request.kind == FigureKind::surface && request.values.empty()) {
+    if (options.mesh == "-")
+      throw Error(Fault::bad_argument, "-: the figure 'surface' needs --values of a mesh from standard input");
+    request.mesh_name = options.mesh;
+    request.threads = common.threads;
+  } else
+    request.mesh = load_mesh(options.mesh);
   if (auto cpu = faster_drawing(*backend, common)) backend = std::move(cpu);
   FigureResult result = make_figure(std::move(request), *backend, monitor);
   monitor.clear();
@@ -139,7 +141,9 @@ void add_figure(Command& app, Common& common) {
       ->type_name("VIEW");
   command
       ->add_option("--values", options->values,
-                   "Of surface: FILE.csv of `cowgpu surface`, values at the faces or vertices of the mesh")
+                   "Of surface: FILE.csv of `cowgpu surface MESH`, values at faces or vertices (of the body of density "
+                   "1 that does "
+                   "not spin)")
       ->type_name("FILE");
   command->add_option("--colour", options->colour, "Of surface: the quantity, by its column (slope)")
       ->type_name("NAME");
@@ -153,6 +157,7 @@ void add_figure(Command& app, Common& common) {
   add_common_options(*command, common);
   command->footer("Examples: cowgpu figure orders benchmark --of harmonic --recipe paper -o harmonic.png\n"
                   "          cowgpu figure spectra benchmark -o spectra.svg\n"
+                  "          cowgpu surface builtin:asteroid --period 4 -o asteroid.csv\n"
                   "          cowgpu figure surface builtin:asteroid --values asteroid.csv --colour slope -o slope.png");
   command->callback([options, &common] { run(*options, common); });
 }

@@ -4,6 +4,7 @@
 #include "host/io/mesh_values_read.hpp"
 #include "host/mass/mass_moments.hpp"
 #include "host/physics/tip.hpp"
+#include "host/requests/surface_gravity.hpp"
 #include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
@@ -127,10 +128,21 @@ plot::Canvas draw(const Drawing& on, std::vector<std::string>& left_out) {
   }
 }
 
-// Values that are in a file, on the mesh.
+// Values that are in a file, on the mesh, or those of its faces where it rests.
+MeshValues values_of(const FigureRequest& request, Backend& backend, Monitor& monitor) {
+  if (!request.values.empty()) {
+    MeshValues values = read_mesh_values(request.values);
+    put_on(values, request.mesh.vertices, request.mesh.faces);
+    return values;
+  }
+  SurfaceGravityRequest gravity;
+  gravity.body.mesh = request.mesh_name;
+  gravity.threads = request.threads;
+  return surface_gravity(plan_surface_gravity(std::move(gravity), monitor), backend, monitor).values;
+}
+
 plot::Canvas of_values(const FigureRequest& request, Backend& backend, Monitor& monitor) {
-  MeshValues values = read_mesh_values(request.values);
-  put_on(values, request.mesh.vertices, request.mesh.faces);
+  const MeshValues values = values_of(request, backend, monitor);
   return figures::surface_values_figure(request.format, values, request.colour, request.views, backend, monitor);
 }
 

@@ -36,8 +36,11 @@ struct FigureRequest {
   /// Result files of the mesh instead of expansions: one for orders, any number for spectra.
   std::vector<std::string> results;
   View view = {28, 14};
-  std::vector<View> views;       ///< of `surface`, in place of `view`; nothing: from several sides
-  std::string values;            ///< of `surface`: the CSV file of values at faces or vertices of the mesh
+  std::vector<View> views; ///< of `surface`, in place of `view`; nothing: from several sides
+  /// Of `surface`: the CSV file of values at faces or vertices of the mesh; "": gravity at the faces of the body of density 1
+  /// that does not spin, whose mesh `mesh_name` names as load_mesh() takes it.
+  std::string values, mesh_name;
+  unsigned threads = 0;          ///< of `surface`: threads of what is done on the host; 0: all
   std::string colour;            ///< of `surface`: the quantity that is shown; "": shown_column()'s choice
   Plane plane;                   ///< plane of streamlines
   std::size_t streamlines = 240; ///< how many
