@@ -19,7 +19,7 @@
 
 #define POLYHEDRON_LANES 32 // of a workgroup
 #define POLYHEDRON_GROUP 64 // points of a workgroup
-#define POLYHEDRON_SHORT 64      // steps of a short sum
+#define POLYHEDRON_SHORT 64 // steps of a short sum
 #define POLYHEDRON_STEP_TEXELS 10
 #define POLYHEDRON_ROWS_FIRST 5   // V twice, -grad V, w
 #define POLYHEDRON_ROWS_SECOND 18 // dd V (xx, xy, xz, yy, yz, zz), its jump, edges the point is on
@@ -30,6 +30,7 @@
 #define POLYHEDRON_FLAG_SHARP_PQ 2
 #define POLYHEDRON_FLAG_SHARP_QN 4
 #define POLYHEDRON_FLAG_SHARP_NP 8
+#define POLYHEDRON_FLAG_FIRST 16 // a strip begins
 
 #ifdef __cplusplus
 namespace cowgpu::shaders {

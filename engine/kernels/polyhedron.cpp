@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <iterator>
 
 namespace cowgpu::engine {
 namespace {
@@ -24,8 +26,9 @@ struct Dispatches {
   std::vector<std::uint64_t> steps; // of each group
 };
 
-Dispatches dispatches_of(const PolyhedronList& list, std::uint32_t budget, std::uint64_t most_steps,
-                         std::uint32_t most_groups) {
+// `strips`: steps that strips begin with. Dispatches end where strips do: what a step needs of those before is not kept.
+Dispatches dispatches_of(const PolyhedronList& list, std::span<const std::uint32_t> strips, std::uint64_t budget,
+                         std::uint64_t most_steps, std::uint32_t most_groups) {
   const std::size_t groups = list.starts.size() - 1;
   Dispatches found;
   found.steps.resize(groups);
@@ -52,22 +55,29 @@ Dispatches dispatches_of(const PolyhedronList& list, std::uint32_t budget, std::
     for (std::size_t g = 0; g < groups; ++g) {
       At& own = at[g];
       if (own.left == 0) continue;
-      const auto steps = std::uint32_t(std::min<std::uint64_t>(own.left, std::min<std::uint64_t>(budget, most_steps)));
-      if (sum + steps > most_steps || found.work.size() - first == most_groups) end_part();
-      found.work.push_back({std::uint32_t(g), own.range, own.step, steps});
-      sum += steps;
-      own.left -= steps;
-      for (std::uint64_t rest = steps; rest > 0;) {
-        const std::uint32_t here = list.ranges[own.range][1] - own.step;
-        if (rest < here) {
-          own.step += std::uint32_t(rest);
-          rest = 0;
-        } else {
-          rest -= here;
-          ++own.range;
-          if (own.left > 0 || rest > 0) own.step = list.ranges[own.range][0];
+      const At begin = own;
+      std::uint64_t steps = 0;
+      while (own.left > 0) {
+        const std::uint32_t range_end = list.ranges[own.range][1];
+        std::uint32_t stop = range_end;
+        if (steps + (range_end - own.step) > budget) {
+          const std::uint64_t reach = own.step + (budget - steps);
+          stop = *std::prev(std::upper_bound(strips.begin(), strips.end(), reach));
+          if (stop <= own.step) break;
         }
+        steps += stop - own.step;
+        own.left -= stop - own.step;
+        own.step = stop;
+        if (stop < range_end) break;
+        ++own.range;
+        if (own.left > 0) own.step = list.ranges[own.range][0];
       }
+      if (steps == 0)
+        throw Error(Failure::out_of_range, 0,
+                    fmt::format("{} loop iterations an invocation are fewer than a strip of faces takes", budget));
+      if (sum + steps > most_steps || found.work.size() - first == most_groups) end_part();
+      found.work.push_back({std::uint32_t(g), begin.range, begin.step, std::uint32_t(steps)});
+      sum += steps;
       more = more || own.left > 0;
     }
     end_part();
@@ -89,6 +99,9 @@ Polyhedron::Polyhedron(Device& device, const PolyhedronInput& input)
   steps_ =
       std::make_unique<Buffer>(device, std::max<std::uint64_t>(input.steps.size_bytes(), texel_bytes), "the faces");
   steps_->write(std::as_bytes(input.steps));
+  for (std::size_t at = 0; at < input.steps.size(); at += polyhedron_numbers)
+    if (std::bit_cast<std::uint64_t>(input.steps[at + polyhedron_numbers - 1]) & POLYHEDRON_FLAG_FIRST)
+      strips_.push_back(std::uint32_t(at / polyhedron_numbers));
 }
 
 Polyhedron::~Polyhedron() = default;
@@ -117,7 +130,8 @@ void Polyhedron::sum(std::span<const double> points, const PolyhedronList& near,
   std::uint64_t all = 0, done = 0;
   Dispatches planned[2];
   for (std::size_t k = 0; k < 2; ++k) {
-    planned[k] = dispatches_of(k == 0 ? near : far, budget_, most_steps, most_groups);
+    planned[k] = dispatches_of(k == 0 ? near : far, strips_, std::min<std::uint64_t>(budget_, most_steps), most_steps,
+                               most_groups);
     for (std::size_t g = 0; g < groups; ++g) {
       expected[g] += planned[k].steps[g];
       all += planned[k].steps[g];

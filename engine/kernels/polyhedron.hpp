@@ -55,6 +55,7 @@ private:
   double touching_;
   std::uint32_t budget_;
   std::unique_ptr<Buffer> steps_;
+  std::vector<std::uint32_t> strips_; // steps that strips begin with
 };
 
 } // namespace cowgpu::engine

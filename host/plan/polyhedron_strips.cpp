@@ -52,7 +52,7 @@ private:
       if (neighbour(face, i) == none) k = i;
     const Face& first = patch_.faces[face];
     std::uint16_t p = first.corners[k], q = first.corners[(k + 1) % 3];
-    corner(p, 0, 0);
+    corner(p, 0, PolyhedronStrips::first);
     corner(q, patch_.edges[first.edges[k]].length, 0);
     while (true) {
       const Face& f = patch_.faces[face];
@@ -78,11 +78,11 @@ private:
     steps_.resize(steps_.size() + PolyhedronStrips::numbers, 0.0);
     return steps_.data() + steps_.size() - PolyhedronStrips::numbers;
   }
-  void corner(std::uint16_t corner, double from_last, double from_first) {
+  void corner(std::uint16_t corner, double from_last, std::uint64_t flags) {
     double* to = room();
     std::copy_n(patch_.vertices[corner].data(), 3, to);
     to[17] = from_last;
-    to[18] = from_first;
+    std::memcpy(to + 19, &flags, sizeof flags);
   }
   void step(const Face& f, std::size_t pq, std::size_t qn, std::size_t np, std::uint16_t n, bool keep_p) {
     double* to = room();

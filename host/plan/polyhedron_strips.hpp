@@ -21,7 +21,7 @@ struct PolyhedronStrips {
   /// Numbers of a step: the new corner N (3); of the face P Q N its normal (3), the normals in its plane of PQ, QN and NP (9),
   /// four times its area, the height of N over PQ; the lengths of QN and NP; the bits of a whole number of flags.
   static constexpr std::size_t numbers = 20;
-  static constexpr std::uint64_t keep_p = 1, sharp_pq = 2, sharp_qn = 4, sharp_np = 8; ///< flags
+  static constexpr std::uint64_t keep_p = 1, sharp_pq = 2, sharp_qn = 4, sharp_np = 8, first = 16; ///< flags
 
   std::vector<double> steps;
   std::vector<std::uint32_t> starts; ///< [patch]: its first step; one more at the end
