@@ -32,10 +32,10 @@ struct PotentialTable {
   std::span<const std::uint8_t> exact; ///< empty: none is
   bool charge = false;                 ///< ex ... instead of ax ...
   std::string length_unit, potential_unit, force_unit, tensor_unit;
-  std::optional<SphereGrid> grid; ///< where the points are one, ring by ring
-  double radius = 0;              ///< radius of that sphere
+  std::optional<SphereGrid> grid;    ///< where the points are one, ring by ring
+  double radius = 0;                 ///< radius of that sphere
   std::span<const Vec3> induction{}; ///< B in tesla; empty: not of a magnet
-  std::array<int, 3> lattice{}; ///< points along x, y and z where they are one, x running fastest; zeros elsewhere
+  std::array<int, 3> lattice{};      ///< points along x, y and z where they are one, x running fastest; zeros elsewhere
 };
 
 /// Writes either format; commit() is left to the caller. Throws Error(cannot_write, too_large, interrupted).

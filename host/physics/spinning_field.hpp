@@ -4,6 +4,7 @@
 #include "host/backend.hpp"
 #include "host/mesh/body.hpp"
 #include "host/monitor.hpp"
+#include "host/physics/surface_gravity.hpp"
 #include "host/types.hpp"
 
 #include <Eigen/Core>
@@ -14,13 +15,6 @@
 #include <vector>
 
 namespace cowgpu::physics {
-
-/// A body that turns at a constant rate about an axis.
-struct Spin {
-  double rate = 0;             ///< rad/s; where no units are stated in units of sqrt(G density)
-  Vec3 axis = Vec3::UnitZ();   ///< of length 1
-  Vec3 through = Vec3::Zero(); ///< a point of the axis
-};
 
 /// Throws Error(bad_argument) for a rate that is negative or not finite and an axis whose length is not 1 to 1e-9.
 void check_spin(const Spin& spin);

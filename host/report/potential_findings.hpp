@@ -7,6 +7,7 @@
 #include "host/physics/potential.hpp"
 #include "host/sphere_grid.hpp"
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -35,7 +36,10 @@ struct PotentialResult {
   std::vector<Vec3> points;
   std::optional<SphereGrid> grid; ///< grid of a sphere, its points ring by ring
   double sphere_radius = 0;       ///< radius of that sphere
+  std::array<int, 3> lattice{};   ///< points along x, y and z of a lattice, x running fastest; zeros elsewhere
   PotentialField field;
+  std::optional<Vec3> magnetisation;                         ///< A/m, of a magnet
+  std::vector<Vec3> induction;                               ///< its B in tesla
   std::vector<std::uint8_t> exact;                           ///< 1 where it is the closed form's; empty: nowhere
   std::vector<double> density;                               ///< where exact
   std::size_t exact_points = 0, far_points = 0;              ///< by the polyhedron; where its series was better

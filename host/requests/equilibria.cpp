@@ -60,18 +60,6 @@ void weigh(const Measure& mass, Body& body) {
   body.density = density;
 }
 
-Vec3 largest_axis(const Body& body) {
-  const PrincipalAxes principal = principal_axes(about_centre(rigid_body(body)));
-  if (principal.last_two_alike)
-    refuse(
-        principal.first_two_alike
-            ? "the body has three equal moments of inertia, as a ball has, and so no axis of the largest one: say by "
-              "--spin x,y,z what it turns about"
-            : "the two largest moments of inertia of the body are equal, so that none of its axes has the largest "
-              "one: say by --spin x,y,z what it turns about");
-  return principal.axes.col(2);
-}
-
 EquilibriaResult::ZeroVelocity zero_velocity(const ZeroVelocityRequest& r, const Body& body, const EquilibriaResult& s,
                                              const Backend& backend, Monitor& monitor) {
   const auto& points = s.equilibria.points;
@@ -108,7 +96,8 @@ EquilibriaResult equilibria(const EquilibriaRequest& request, Backend& backend, 
   s.si = body.placement.units.stated;
   check_unit("--omega or --period", request.spin_rate, s.si, "--period 5.27h or --omega 3e-4rad/s");
   s.axis_found = !request.spin_axis;
-  s.spin = {request.spin_rate.value, request.spin_axis ? *request.spin_axis : largest_axis(body), body.origin};
+  s.spin = {request.spin_rate.value, request.spin_axis ? *request.spin_axis : largest_principal_axis(body),
+            body.origin};
   if (s.si) s.constant = gravitational_constant_si;
   s.subject = subject(loaded);
   s.mass = body.mass();

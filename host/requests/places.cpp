@@ -8,8 +8,8 @@
 namespace cowgpu {
 namespace {
 
-constexpr int largest_side = 20000; // of a plane, in points
-constexpr int largest_grid_side = 1625;  // its cube is below 2^32
+constexpr int largest_side = 20000;     // of a plane, in points
+constexpr int largest_grid_side = 1625; // its cube is below 2^32
 
 double length_of(const char* option, const Reach& reach, const PlaceFrame& frame) {
   if (reach.radii) return reach.length.value * frame.radius;
@@ -45,7 +45,8 @@ Places plane(const PlaneRequest& request, const PlaceFrame& frame) {
 
 Places lattice(const GridRequest& request, const PlaceFrame& frame) {
   const double extent = length_of("--grid", request.extent, frame);
-  if (!(extent > 0)) throw Error(Fault::bad_argument, fmt::format("--grid: a cube of the extent {} has no points", extent));
+  if (!(extent > 0))
+    throw Error(Fault::bad_argument, fmt::format("--grid: a cube of the extent {} has no points", extent));
   Places places;
   const int n = request.count;
   const double step = 2 * extent / (n - 1);
@@ -54,7 +55,8 @@ Places lattice(const GridRequest& request, const PlaceFrame& frame) {
       for (int i = 0; i < n; ++i)
         places.points.emplace_back(frame.origin + step * Vec3(i, j, k) - Vec3::Constant(extent));
   places.lattice = {n, n, n};
-  places.name = fmt::format("lattice of {} x {} x {} points up to {:.6g} from the origin along each axis", n, n, n, extent);
+  places.name =
+      fmt::format("lattice of {} x {} x {} points up to {:.6g} from the origin along each axis", n, n, n, extent);
   return places;
 }
 
@@ -80,8 +82,8 @@ void check_counts(const PlaceRequest& request) {
                 fmt::format("a sphere of {} rings: there are from 1 to {}", sphere->rings, largest_grid_degree + 1));
   if (const auto* grid = std::get_if<GridRequest>(&request);
       grid && (grid->count < 2 || grid->count > largest_grid_side))
-    throw Error(Fault::bad_argument, fmt::format("a lattice of {} points a side: there are from 2 to {}", grid->count,
-                                                 largest_grid_side));
+    throw Error(Fault::bad_argument,
+                fmt::format("a lattice of {} points a side: there are from 2 to {}", grid->count, largest_grid_side));
   const auto* plane = std::get_if<PlaneRequest>(&request);
   if (plane && (plane->axis < 0 || plane->axis > 2 || plane->count < 2 || plane->count > largest_side))
     throw Error(Fault::bad_argument,

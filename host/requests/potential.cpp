@@ -3,6 +3,7 @@
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
 #include "host/physics/body_field.hpp"
+#include "host/physics/magnetisation.hpp"
 #include "host/report/result.hpp"
 #include "host/requests/memory.hpp"
 
@@ -133,6 +134,19 @@ void compute(const LoadedMass& input, const PotentialRequest& request, const Mul
   s.density = std::move(exact.density);
 }
 
+void check_magnet(const PotentialRequest& r) {
+  if (!r.magnetisation) return;
+  const auto refuse = [](const std::string& why) { throw Error(Fault::bad_argument, "--magnetisation " + why); };
+  if (!r.magnetisation->allFinite()) refuse("takes three finite numbers, in A/m");
+  if (r.derivatives != Derivatives::second)
+    refuse("is multiplied with second derivatives of the potential: leave --derivatives out");
+  if (r.body.charge) refuse("and --charge are two kinds of bodies: leave one out");
+  if (r.body.density)
+    refuse("says how strong the magnet is: leave --density out, which is 1 then; a --part has its own part "
+           "of the magnetisation, -1 for a hole");
+  refuse_coefficients("--magnetisation", r.body.mesh);
+}
+
 void apply_law(const FieldLaw& law, PotentialField& field) {
   for (double& v : field.value) v = law.potential(v);
   for (Vec3& g : field.gradient) g = law.force(g);
@@ -165,6 +179,7 @@ int degree_wanted(const LoadedMass& input, const PotentialRequest& request) {
 PotentialResult potential(const PotentialRequest& request, Backend& backend, unsigned threads, Monitor& monitor) {
   if (request.exact || request.inside_exact)
     refuse_coefficients(request.exact ? "--exact" : "--inside exact", request.body.mesh);
+  check_magnet(request);
   const LoadedMass loaded = load_mass(request.body, Motion::held, monitor);
   PotentialResult s;
   s.subject = subject(loaded);
@@ -182,14 +197,17 @@ PotentialResult potential(const PotentialRequest& request, Backend& backend, uns
   if (loaded.coefficients) s.reference_radius = *loaded.coefficients->reference_radius * loaded.units.metre;
   const std::size_t count = count_places(request.places);
   MemoryNeed need = backend.exterior_potential({own, s.lmax, request.derivatives})->memory(count);
-  need.host += 64 * count + request.extra_bytes;
+  need.host += (request.magnetisation ? 88 : 64) * count + request.extra_bytes;
   check_memory(need, backend, request.exact ? "ask for fewer points" : "ask for fewer points or a lower --order");
   Places places = find_places(request.places, {s.origin, s.radius, s.si});
   s.places = std::move(places.name);
   s.points = std::move(places.points);
   s.grid = places.grid;
   s.sphere_radius = places.radius;
+  s.lattice = places.lattice;
   compute(loaded, request, own, backend, threads, monitor, s);
+  s.magnetisation = request.magnetisation;
+  if (s.magnetisation) s.induction = magnetic_induction(s.field.hessian, *s.magnetisation);
   apply_law(s.law, s.field);
   s.device = computed_by(s, backend, threads);
   return s;

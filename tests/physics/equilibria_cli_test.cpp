@@ -71,14 +71,16 @@ TEST_CASE("equilibria of a box are the same in SI, but for their units", "[equil
 TEST_CASE("a zero-velocity surface is written with its constant", "[equilibria][cli]") {
   const TemporaryFolder folder;
   const std::string ply = folder / "zero.ply";
-  const json found = answer({"builtin:box:3,2,1", "--omega", "0.8", "--surface", "E2", "--surface-cells", "12", "-o", ply});
+  const json found =
+      answer({"builtin:box:3,2,1", "--omega", "0.8", "--surface", "E2", "--surface-cells", "12", "-o", ply});
   CHECK(found["surface_jacobi"] == column(found["equilibria"], "jacobi")[1]);
   CHECK(found["surface_triangles"].get<double>() > 100);
   std::ifstream file(ply);
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   CHECK_THAT(text, Contains("element face " + std::to_string(int(found["surface_triangles"].get<double>()))));
   refused({"builtin:box:3,2,1", "--omega", "0.8", "--surface", "E9", "-o", ply, "--device", "cpu"}, 2, "5 were found");
-  refused({"builtin:box:3,2,1", "--omega", "0.8", "--surface", "1", "-o", ply, "--device", "cpu"}, 2, "no zero-velocity");
+  refused({"builtin:box:3,2,1", "--omega", "0.8", "--surface", "1", "-o", ply, "--device", "cpu"}, 2,
+          "no zero-velocity");
 }
 
 TEST_CASE("equilibria without a spin, an axis, units or a mass are refused in words", "[equilibria][cli]") {
