@@ -406,6 +406,11 @@ record surface-points surface $in/cube.off --at $in/points.csv --tolerance 0 --p
 record surface-height surface builtin:ellipsoid:3,2,1@2 --height 2 --mass 5 "${cpu[@]}"
 record surface-vulkan surface builtin:cow@0 "${units[@]}" --json "${vulkan[@]}"
 record surface-plan surface builtin:cow@2 --dry-run "${cpu[@]}"
+record equilibria equilibria builtin:ellipsoid:3,2,1@2 "${units[@]}" --period 2h --json "${cpu[@]}"
+record equilibria-box equilibria builtin:box:3,2,1 --omega 0.8 --surface E2 --surface-cells 12 -o z.ply "${cpu[@]}"
+record equilibria-ring equilibria builtin:sphere:1@1 --omega 0.8 --spin z --smallest 0.03 --cells 60000 "${cpu[@]}"
+record potential-magnet potential builtin:box:2,2,2 --magnetisation 0,0,1e6 --exact --at $in/outside.csv "${cpu[@]}"
+record potential-grid potential builtin:box:1,2,3 --exact --grid 2R,4 -o g.nc "${cpu[@]}"
 record tensors tensors builtin:cow@1
 record tensors-json tensors $in/cube.off --part $in/tetrahedron.obj=-0.5 "${units[@]}" --json
 record tensors-file tensors "$(of expand-units)/u.json" --inertia

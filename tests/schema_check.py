@@ -346,6 +346,22 @@ with tempfile.TemporaryDirectory() as folder:
             assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
 found["radius"] = -1
 refuses(surface, found, "a negative radius")
+equilibria = load_schema("equilibria")
+with tempfile.TemporaryDirectory() as folder:
+    for arguments in (
+        ["builtin:box:3,2,1", "--omega", "0.8"],
+        ["builtin:ellipsoid:3,2,1@1", "--length-unit", "km", "--mass", "5e12kg", "--period", "9h"],
+        ["builtin:sphere:1@0", "--omega", "0.8", "--spin", "z", "--smallest", "0.05", "--cells", "20000"],
+        ["builtin:box:3,2,1", "--omega", "0.8", "--surface", "E2", "--surface-cells", "8", "-o", os.path.join(folder, "z.glb")],
+    ):
+        found = output_of("equilibria", *arguments, "--device", "cpu", "--json")
+        jsonschema.validate(found, equilibria)
+        assert set(found) <= set(equilibria["properties"])
+        assert ("surface_jacobi" in found) is ("--surface" in arguments)
+        for table in ("equilibria", "undecided"):
+            assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
+found["complete"] = "mostly"
+refuses(equilibria, found, "a search that is mostly complete")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 reproduce = load_schema("reproduce")
 with tempfile.TemporaryDirectory() as folder:

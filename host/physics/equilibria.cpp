@@ -50,7 +50,7 @@ public:
         newton_(body, problem.constant, problem.spin, backend) {
     radius_ = ball_radius(body);
     const double pull = problem.constant * body.mass();
-    bounds_.mass = pull;
+    bounds_ = {problem.constant * largest_density(body, 1), pull, frame_.box_low(), frame_.box_high()};
     nothing_ = 1e-6 * std::abs(body.density);
     found_.low = frame_.low;
     found_.high = frame_.high;
@@ -129,8 +129,11 @@ private:
       const SpinningValues values = field_.at(points, true, monitor_);
       check_densities(values, points);
       found_.places += points.size();
-      found_.largest_winding = std::max(found_.largest_winding, values.largest_winding);
-      bounds_.density = problem_.constant * largest_density(body_, found_.largest_winding);
+      if (values.largest_winding > found_.largest_winding) {
+        found_.largest_winding = values.largest_winding;
+        bounds_ = {problem_.constant * largest_density(body_, found_.largest_winding), problem_.constant * body_.mass(),
+                   frame_.box_low(), frame_.box_high()};
+      }
       for (std::size_t i = begin; i < end; ++i) judge(cells[i], values, i - begin, left, starts);
     }
     // The same number from everywhere, where there are too many.
@@ -147,14 +150,15 @@ private:
     const Vec3 a = frame_.turned(values.acceleration[i]);
     const Eigen::Matrix3d gradient = frame_.turned(values.gradient[i]);
     // Half of the largest density, in a ball about the place.
-    Eigen::Matrix3d known = -2 * std::numbers::pi / 3 * bounds_.density * Eigen::Matrix3d::Identity();
+    Eigen::Matrix3d known = -2 * std::numbers::pi / 3 * bounds_.density() * Eigen::Matrix3d::Identity();
     const double square = problem_.spin.rate * problem_.spin.rate;
     known(0, 0) += square;
     known(1, 1) += square;
     if (least_over_box(a, known, cell.half) > bounds_.change(frame_.farthest_vertex(cell.centre), h) + slack_) return;
     const bool smooth = !values.on_edge[i] && depth > 0;
-    if (smooth && least_over_box(a, gradient, cell.half) >
-                      bounds_.remainder(depth, values.density[i] < nothing_, h) + slack_ + tensor_slack_ * h)
+    if (smooth &&
+        least_over_box(a, gradient, cell.half) >
+            bounds_.remainder(cell.centre, depth, values.density[i] < nothing_, h) + slack_ + tensor_slack_ * h)
       return;
     left.push_back(cell);
     if (!smooth) return;
@@ -181,7 +185,7 @@ private:
       if (known) continue;
       const double stiffness = e.motions.stiffness.cwiseAbs().minCoeff() - tensor_slack_;
       if (e.depth > 0 && stiffness > 0)
-        e.alone_within = 0.999 * bounds_.injective_within(e.depth, !e.inside, stiffness);
+        e.alone_within = 0.999 * bounds_.injective_within(q, e.depth, !e.inside, stiffness);
       found_.points.push_back(std::move(e));
     }
   }
@@ -207,7 +211,7 @@ private:
   SpinFrame frame_;
   SpinningField field_;
   EquilibriumNewton newton_;
-  GravityBounds bounds_;
+  GravityBounds bounds_{0, 0, Vec3::Zero(), Vec3::Zero()};
   Equilibria found_;
   double radius_ = 0, slack_ = 0, tensor_slack_ = 0, nothing_ = 0;
 };

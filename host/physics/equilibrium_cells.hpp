@@ -29,6 +29,10 @@ public:
   /// An upper bound of the distance of a vertex from a place, by the box of all in this frame.
   double farthest_vertex(const Vec3& place) const { return (place - box_middle_).cwiseAbs().norm() + box_half_.norm(); }
 
+  /// The box of all vertices in this frame.
+  Vec3 box_low() const { return box_middle_ - box_half_; }
+  Vec3 box_high() const { return box_middle_ + box_half_; }
+
   /// Of cells, in the frame's places: the ball that holds them, in mesh coordinates, and whether they go round the axis.
   UndecidedPlace place_of(const std::vector<Cell>& group) const;
 

@@ -151,7 +151,7 @@ TEST_CASE("the eigenvalues of small motions are those of the six linear equation
 TEST_CASE("no field changes faster than its bounds, and a box's comes near them", "[equilibria]") {
   const Polyhedron box_body(test::box(Vec3(1, 2, 3)).vertices, test::box(Vec3(1, 2, 3)).faces);
   const Vec3 low(0, 0, 0), high(1, 2, 3);
-  const GravityBounds bounds{1, 6};
+  const GravityBounds bounds(1, 6, low, high);
   std::mt19937 random(3);
   double change = 0, remainder = 0, gradient = 0;
   for (int k = 0; k < 600; ++k) {
@@ -172,19 +172,20 @@ TEST_CASE("no field changes faster than its bounds, and a box's comes near them"
     if (!(depth > h)) continue;
     const Eigen::Matrix3d tensor = here.hessian.cast<double>();
     const double left = (by - tensor * d).norm();
-    CHECK(left <= bounds.remainder(depth, outside, h));
-    remainder = std::max(remainder, left / bounds.remainder(depth, outside, h));
+    CHECK(left <= bounds.remainder(x, depth, outside, h));
+    remainder = std::max(remainder, left / bounds.remainder(x, depth, outside, h));
     const double turned =
         (there.hessian.cast<double>() - tensor).selfadjointView<Eigen::Lower>().eigenvalues().cwiseAbs().maxCoeff();
-    CHECK(turned <= bounds.gradient_change(depth, outside, h));
-    gradient = std::max(gradient, turned / bounds.gradient_change(depth, outside, h));
+    CHECK(turned <= bounds.gradient_change(x, depth, outside, h));
+    gradient = std::max(gradient, turned / bounds.gradient_change(x, depth, outside, h));
   }
   CHECK(change > 0.05);
   CHECK(remainder > 0.05);
   CHECK(gradient > 0.05);
-  const double h = bounds.injective_within(0.5, false, 2);
-  CHECK(bounds.gradient_change(0.5, false, h * (1 - 1e-9)) < 2);
-  CHECK(bounds.gradient_change(0.5, false, h * (1 + 1e-9)) > 2);
+  const Vec3 middle(0.5, 1, 1.5);
+  const double h = bounds.injective_within(middle, 0.5, false, 2);
+  CHECK(bounds.gradient_change(middle, 0.5, false, h * (1 - 1e-9)) < 2);
+  CHECK(bounds.gradient_change(middle, 0.5, false, h * (1 + 1e-9)) > 2);
 }
 
 TEST_CASE("the least of a linear field over a box is never above the truth, and mostly half of it", "[equilibria]") {

@@ -9,6 +9,7 @@
 #include "host/requests/diff.hpp"
 #include "host/requests/distance.hpp"
 #include "host/requests/drop.hpp"
+#include "host/requests/equilibria.hpp"
 #include "host/requests/errata.hpp"
 #include "host/requests/expand.hpp"
 #include "host/requests/expand_flow.hpp"
