@@ -15,7 +15,7 @@ namespace {
 
 struct Options {
   std::string mass, period, omega, spin;
-  double smallest = 1e-3;
+  double smallest = 1e-4;
   int cells = 1'000'000;
   std::string surface, extent, output;
   int surface_cells = 64;
@@ -71,6 +71,9 @@ void check_outputs(const PhysicsCall& call, const Options& options) {
                 "--surface says which zero-velocity surface, and -o where it goes, FILE.ply or FILE.glb: "
                 "give both or neither");
   if (options.output == "-") throw Error(Fault::bad_argument, "-o -: the standard output has the report; name a file");
+  if (!options.output.empty() && !options.output.ends_with(".ply") && !options.output.ends_with(".glb"))
+    throw Error(Fault::bad_argument,
+                fmt::format("-o {}: a zero-velocity surface is FILE.ply or FILE.glb", options.output));
   for (const std::string& name : input_files(call.body))
     if (!options.output.empty()) refuse_mesh_as_output(name, options.output);
 }
@@ -157,6 +160,7 @@ Solve add_equilibria(Command& command, Common& common, BodyOptions&) {
     check_outputs(call, *options);
     SurfaceOutputs outputs(options->output, "", 1, "surface");
     EquilibriaRequest request = request_of(call, *options);
+    if (outputs.any()) outputs.open({"", ""});
     std::string note;
     const auto backend = open_backend(common, &note);
     if (!note.empty()) request.notes.push_back(note);

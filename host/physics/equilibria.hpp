@@ -17,7 +17,7 @@ struct EquilibriaProblem {
   double constant = 1; ///< G in the body's units
   Spin spin;
   /// Cells are refined down to this half diagonal, in radii of the ball of the body's volume.
-  double smallest = 1e-3;
+  double smallest = 1e-4;
   /// As many places are looked at, at most.
   std::uint64_t most_places = 1'000'000;
   /// Of the field in the search, as PolyhedronProblem has it; it counts among the bounds. Equilibria themselves are those of

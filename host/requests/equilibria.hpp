@@ -28,7 +28,7 @@ struct EquilibriaRequest {
   /// How fast the body turns: in rad/s where units are stated, else in units of sqrt(G density).
   Measure spin_rate;
   std::optional<Vec3> spin_axis; ///< a direction; empty: the largest principal axis
-  double smallest = 1e-3;        ///< as physics::EquilibriaProblem has these
+  double smallest = 1e-4;        ///< as physics::EquilibriaProblem has these
   std::uint64_t cells = 1'000'000;
   std::optional<ZeroVelocityRequest> surface;
   std::vector<std::string> notes; ///< sentences that come after those about the body

@@ -30,7 +30,7 @@ Body body_of(RawMesh mesh, double density = 1, std::vector<Part> parts = {}) {
   return make_body(ClosedSurface::from(std::move(mesh)), {}, density, std::move(parts));
 }
 
-Equilibria search(const Body& body, double rate, double smallest = 1e-3, std::uint64_t most = 1'000'000) {
+Equilibria search(const Body& body, double rate, double smallest = 1e-4, std::uint64_t most = 1'000'000) {
   EquilibriaProblem problem;
   problem.spin = {rate, Vec3::UnitZ(), body.centre_of_mass};
   problem.smallest = smallest;
