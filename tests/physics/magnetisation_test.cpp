@@ -110,7 +110,6 @@ TEST_CASE("the command gives B beside the potential, on lattices and in files to
   REQUIRE(with_hole.exit_code == 0);
   const json left = json::parse(with_hole.out);
   CHECK(std::abs(left["density"].get<double>()) < 1e-12);
-  // Inside the hole B is mu_0 H.
   for (const std::string& file : {csv, nc})
     REQUIRE(
         run({"builtin:box:2,2,2", "--magnetisation", "0,0,1e6", "--exact", "--grid", "3,4", "-o", file}).exit_code ==
