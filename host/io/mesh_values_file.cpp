@@ -110,7 +110,7 @@ std::uint64_t mesh_values_file_memory(MeshValuesFormat format, ValuePlace place,
     return fixed + 3 * 8 * (3 * vertices + 3 * faces + (3 + numbers) * places);
   case MeshValuesFormat::glb: {
     const std::uint64_t shown = place == ValuePlace::faces ? 3 * faces : vertices;
-    return fixed + 16 * places + shown * (24 + 24 + 8 + 12) + faces * 12 + 3 * (shown * 36 + faces * 12);
+    return fixed + 16 * places + shown * (24 + 24 + 8 + 12) + faces * 12 + 5 * (shown * 36 + faces * 12);
   }
   }
   return fixed;
