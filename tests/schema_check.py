@@ -391,3 +391,18 @@ with tempfile.TemporaryDirectory() as folder:
     whole["self_intersections"]["listed"] = [{"faces": [1], "kind": "crossing", "place": [0, 0, 0]}]
     refuses(inspect, whole, "a pair of one face")
 print("all documents passed")
+
+values = load_schema("values")
+with tempfile.TemporaryDirectory() as folder:
+    table = os.path.join(folder, "ball.csv")
+    for at in ("faces", "vertices"):
+        output_of("surface", "builtin:sphere@1", "--at", at, "--device", "cpu", "-q", "--json", "-o", table)
+        with open(table + ".json", encoding="utf-8") as about_file:
+            about = json.load(about_file)
+        jsonschema.validate(about, values)
+        with open(table, encoding="utf-8") as table_file:
+            rows = table_file.read().splitlines()
+        assert rows[0].startswith("id,x,y,z,potential,g_x,g_y,g_z,g,") and len(rows) == about["rows"] + 1
+        assert rows[0].split(",") == [column["name"] for column in about["columns"]]
+about["place"] = "edges"
+refuses(values, about, "values at places of no kind")
