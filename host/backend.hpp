@@ -7,6 +7,7 @@
 #include "host/image.hpp"
 #include "host/moments.hpp"
 #include "host/monitor.hpp"
+#include "host/polyhedron.hpp"
 #include "host/potential.hpp"
 #include "host/render.hpp"
 #include "host/sphere_samples.hpp"
@@ -49,6 +50,9 @@ public:
 
   /// The verb `potential`.
   virtual std::unique_ptr<ExteriorPotential> exterior_potential(const PotentialProblem& problem) const = 0;
+
+  /// The verb `polyhedron`.
+  virtual std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem) const = 0;
 
   /// The scene as a picture: smooth or flat shading, light from the upper left, the light of sky and ground where the
   /// surroundings let it through, edges with 16 samples a pixel. Every path and any number of threads give the same

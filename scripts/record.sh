@@ -399,6 +399,18 @@ record potential-file potential "$(of expand-units)/u.gfc" --sphere 1.2R --resol
 record potential-moon potential $in/moon.tab --length-unit km --sphere 1700km --resolution 3 "${cpu[@]}"
 record potential-errors potential builtin:cow@0 --errors --orders 0,2,4 --distances 1.5,4 --plot e.svg --plot e.png "${cpu[@]}"
 record potential-paper potential builtin:cow@0 --recipe paper --at 30,0,0 "${cpu[@]}"
+record surface surface builtin:cow@1 "${units[@]}" --period 2h -o s.csv -o s.vtp -o s.nc "${cpu[@]}"
+record surface-vertices surface builtin:cow@1 --omega 0.5 --at vertices --tolerance 1e-6 --guarantee --json -o s.ply -o s.glb \
+  "${cpu[@]}"
+record surface-points surface $in/cube.off --at $in/points.csv --tolerance 0 --part $in/tetrahedron.obj=-0.5 -o p.csv "${cpu[@]}"
+record surface-height surface builtin:ellipsoid:3,2,1@2 --height 2 --mass 5 "${cpu[@]}"
+record surface-vulkan surface builtin:cow@0 "${units[@]}" --json "${vulkan[@]}"
+record surface-plan surface builtin:cow@2 --dry-run "${cpu[@]}"
+record equilibria equilibria builtin:ellipsoid:3,2,1@2 "${units[@]}" --period 2h --json "${cpu[@]}"
+record equilibria-box equilibria builtin:box:3,2,1 --omega 0.8 --surface E2 --surface-cells 12 -o z.ply "${cpu[@]}"
+record equilibria-ring equilibria builtin:sphere:1@1 --omega 0.8 --spin z --smallest 0.03 --cells 60000 "${cpu[@]}"
+record potential-magnet potential builtin:box:2,2,2 --magnetisation 0,0,1e6 --exact --at $in/outside.csv "${cpu[@]}"
+record potential-grid potential builtin:box:1,2,3 --exact --grid 2R,4 -o g.nc "${cpu[@]}"
 record tensors tensors builtin:cow@1
 record tensors-json tensors $in/cube.off --part $in/tetrahedron.obj=-0.5 "${units[@]}" --json
 record tensors-file tensors "$(of expand-units)/u.json" --inertia
@@ -472,6 +484,8 @@ record refused-gfc spectrum $in/bad.gfc
 record refused-convention convert "$(of expand-units)/u.json" c.gfc --form complex
 record refused-inside potential builtin:cow@0 --at 0,0,0 "${cpu[@]}"
 record refused-exact potential "$(of expand-units)/u.gfc" --at 9,0,0 --exact "${cpu[@]}"
+record refused-ball surface builtin:sphere "${units[@]}" --period 5h "${cpu[@]}"
+record refused-tolerance surface builtin:box --tolerance 1e-15 "${cpu[@]}"
 record refused-inertia tensors $in/moon.tab --length-unit km --inertia
 record refused-rate radiate builtin:cow@0 --omega fast
 record refused-orbit tides builtin:cow@0 --orbit 6771km

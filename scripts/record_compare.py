@@ -50,6 +50,7 @@ LEFT_OUT_PATTERNS = [
 LEFT_OUT_OF_TEXT = [
     (r"^( *time: ).*", "times measured"),
     (r"( in )[\d.]+ s\b", "times measured"),
+    (r"^(  seconds of the sum +).*", "times measured"),
     (r"( closest points, )[\d.]+ s\b", "the time of a search"),
     (r"(, )[\d.e+]+ a second", "a rate measured"),
     (r"^(\[\d+/\d+\] .*: )[\d.]+ s$", "the time of a stage of reproduce"),

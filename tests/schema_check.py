@@ -325,6 +325,43 @@ for arguments in (
         assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
 found["law"] = "levity"
 refuses(potential, found, "a law of no kind")
+surface = load_schema("surface")
+with tempfile.TemporaryDirectory() as folder:
+    points = os.path.join(folder, "points.csv")
+    with open(points, "w", encoding="utf-8") as file:
+        file.write("x,y,z\n0,0,0\n30,0,0\n0.5,0.1,0\n")
+    for arguments in (
+        ["builtin:cow@0"],
+        ["builtin:cow@0", "--length", "2m", "--density", "1g/cm3", "--period", "1h", "--at", "vertices", "--height", "1cm"],
+        ["builtin:cow@0", "--at", points, "--tolerance", "0"],
+        ["builtin:box:1,2,3", "--omega", "0.5", "--spin", "0,1,1", "--guarantee"],
+        ["builtin:box", "--length-unit", "km", "--mass", "1e12kg"],
+    ):
+        found = output_of("surface", *arguments, "--device", "cpu", "--json")
+        jsonschema.validate(found, surface)
+        assert set(found) <= set(surface["properties"])
+        assert ("spin_rate" in found) is ("--period" in arguments or "--omega" in arguments)
+        assert ("slopes" in found) is (points not in arguments)
+        for table in ("ranges", "slopes"):
+            assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
+found["radius"] = -1
+refuses(surface, found, "a negative radius")
+equilibria = load_schema("equilibria")
+with tempfile.TemporaryDirectory() as folder:
+    for arguments in (
+        ["builtin:box:3,2,1", "--omega", "0.8"],
+        ["builtin:ellipsoid:3,2,1@1", "--length-unit", "km", "--mass", "5e12kg", "--period", "9h"],
+        ["builtin:sphere:1@0", "--omega", "0.8", "--spin", "z", "--smallest", "0.05", "--cells", "20000"],
+        ["builtin:box:3,2,1", "--omega", "0.8", "--surface", "E2", "--surface-cells", "8", "-o", os.path.join(folder, "z.glb")],
+    ):
+        found = output_of("equilibria", *arguments, "--device", "cpu", "--json")
+        jsonschema.validate(found, equilibria)
+        assert set(found) <= set(equilibria["properties"])
+        assert ("surface_jacobi" in found) is ("--surface" in arguments)
+        for table in ("equilibria", "undecided"):
+            assert all(len(row) == len(found[table]["columns"]) for row in found.get(table, {"rows": []})["rows"])
+found["complete"] = "mostly"
+refuses(equilibria, found, "a search that is mostly complete")
 jsonschema.validate(output_of("meshes", "--json"), load_schema("meshes"))
 reproduce = load_schema("reproduce")
 with tempfile.TemporaryDirectory() as folder:
@@ -354,3 +391,18 @@ with tempfile.TemporaryDirectory() as folder:
     whole["self_intersections"]["listed"] = [{"faces": [1], "kind": "crossing", "place": [0, 0, 0]}]
     refuses(inspect, whole, "a pair of one face")
 print("all documents passed")
+
+values = load_schema("values")
+with tempfile.TemporaryDirectory() as folder:
+    table = os.path.join(folder, "ball.csv")
+    for at in ("faces", "vertices"):
+        output_of("surface", "builtin:sphere@1", "--at", at, "--device", "cpu", "-q", "--json", "-o", table)
+        with open(table + ".json", encoding="utf-8") as about_file:
+            about = json.load(about_file)
+        jsonschema.validate(about, values)
+        with open(table, encoding="utf-8") as table_file:
+            rows = table_file.read().splitlines()
+        assert rows[0].startswith("id,x,y,z,potential,g_x,g_y,g_z,g,") and len(rows) == about["rows"] + 1
+        assert rows[0].split(",") == [column["name"] for column in about["columns"]]
+about["place"] = "edges"
+refuses(values, about, "values at places of no kind")

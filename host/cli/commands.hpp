@@ -47,6 +47,7 @@ void add_report(Command& app, Common& common);
 void add_inflate(Command& app, Common& common);
 void add_distance(Command& app, Common& common);
 void add_streamlines(Command& app, Common& common);
+void add_surface(Command& app, Common& common);
 void add_reproduce(Command& app, Common& common);
 void add_figure(Command& app, Common& common);
 /// Adds the applications of the multipoles, host/cli/physics.cpp.

@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   cli::add_streamlines(app, common);
   cli::add_figure(app, common);
   cli::add_physics(app, common);
+  cli::add_surface(app, common);
   cli::add_reproduce(app, common);
   cli::add_errata(app, common);
   cli::add_inspect(app, common);

@@ -39,6 +39,11 @@ constexpr std::array applications = {
         "          cowgpu tides cow.json --length-unit 2.4m --density 1g/cm3 --orbit 42164km --love 0.1 --quality 10 "
         "--spin 1rad/s",
         add_tides, false, true},
+    Application{"equilibria",
+                "Where a particle stays at rest on or about a spinning body, inside it too, and whether it stays there",
+                "Examples: cowgpu equilibria eros.tab --length-unit km --density 2.67g/cm3 --period 5.27h\n"
+                "          cowgpu equilibria builtin:ellipsoid:3,2,1@3 --omega 0.7 --json",
+                add_equilibria},
     Application{
         "drop", "Whether a body that is dropped lands on its feet: its fall, turned by the gradient of gravity",
         "Examples: cowgpu drop benchmark --length 2.5m --density 1g/cm3 --height 10m --attitude upside-down\n"

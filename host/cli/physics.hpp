@@ -36,6 +36,7 @@ Solve add_potential(Command& command, Common& common, BodyOptions& body);
 Solve add_radiate(Command& command, Common& common, BodyOptions& body);
 Solve add_tides(Command& command, Common& common, BodyOptions& body);
 Solve add_drop(Command& command, Common& common, BodyOptions& body);
+Solve add_equilibria(Command& command, Common& common, BodyOptions& body);
 Solve add_tip(Command& command, Common& common, BodyOptions& body);
 
 } // namespace cowgpu::cli

@@ -21,7 +21,7 @@ struct Options {
   PlaceOptions places;
   int lmax = -1, derivatives = 2;
   bool exact = false, errors = false;
-  std::string inside = "refuse", output, distances = "1,1.1,1.5,2,3,5,10";
+  std::string inside = "refuse", magnetisation, output, distances = "1,1.1,1.5,2,3,5,10";
   std::vector<std::string> plots;
   std::vector<std::string> orders = {"0,1,2,4,8,16,32"};
 };
@@ -43,8 +43,10 @@ std::vector<double> parse_distances(const std::string& text) {
 
 void check_options(const PhysicsCall& common, const Options& options) {
   const auto refuse = [](const std::string& why) { throw Error(Fault::bad_argument, why); };
-  if (options.errors && (options.places.any() || options.exact || !options.output.empty()))
-    refuse("--errors has places of its own: leave --at, --sphere, --plane, --exact and -o out");
+  if (options.errors &&
+      (options.places.any() || options.exact || !options.magnetisation.empty() || !options.output.empty()))
+    refuse(
+        "--errors has places of its own: leave --at, --sphere, --plane, --grid, --magnetisation, --exact and -o out");
   if (!options.errors && !options.plots.empty()) refuse("--plot draws the errors of --errors");
   if (options.output == "-") refuse("-o -: the standard output has the report; name a file");
   if (!options.output.empty()) file_format(options.output);
@@ -83,15 +85,21 @@ physics::Findings solve(const PhysicsCall& call, const Options& options, const C
   request.derivatives = Derivatives(options.derivatives);
   request.exact = options.exact;
   request.inside_exact = options.inside == "exact";
+  if (!options.magnetisation.empty()) {
+    request.magnetisation = parse_point(options.magnetisation);
+    if (!request.magnetisation)
+      throw Error(Fault::bad_argument,
+                  fmt::format("--magnetisation {}: it takes X,Y,Z, three finite numbers in A/m, in the body's axes",
+                              options.magnetisation));
+  }
   if (file) request.extra_bytes = potential_file_bytes(count_places(request.places));
-  // The closed form is computed in 80-bit numbers, which no device has.
+  // The closed form of few points is computed in 80-bit numbers, which no device has.
   std::string note;
   const auto backend = options.exact ? make_cpu_backend(common.threads) : open_backend(common, &note);
   if (options.exact && common.device != "auto" && common.device != "cpu")
-    note =
-        fmt::format("--device {} is not used: the closed form of the polyhedron is computed in 80-bit arithmetic, on "
-                    "the CPU",
-                    common.device);
+    note = fmt::format("--device {} is not used: the closed form of the polyhedron is computed on the CPU, in 80-bit "
+                       "arithmetic unless there are many points",
+                       common.device);
   if (!note.empty()) request.notes.push_back(note);
   if (!common.quiet && !note.empty()) say(fmt::format("cowgpu: {}\n", note));
   ConsoleMonitor monitor(common.style());
@@ -132,6 +140,10 @@ Solve add_potential(Command& command, Common& common, BodyOptions& body) {
           "A plane AXIS,OFFSET,EXTENT,N: across x, y or z, OFFSET from the origin, EXTENT to all sides, N x N points")
       ->type_name("PLANE");
   command
+      .add_option("--grid", options->places.grid,
+                  "A lattice EXTENT,N in a cube about the origin: EXTENT to all six sides, N x N x N points")
+      ->type_name("GRID");
+  command
       .add_option("--order,--lmax", options->lmax, "Degree that the series goes to (default 32, of a file all it has)")
       ->check(in_range(0, largest_potential_degree))
       ->type_name("L");
@@ -149,6 +161,11 @@ Solve add_potential(Command& command, Common& common, BodyOptions& body) {
   command.add_flag("--exact", options->exact,
                    "The polyhedron's closed form everywhere, or where it is nearer to the truth (far away) its series");
   command.add_flag("--charge", body.charge, "--density is one of charge (C/m3): volts, and volts a metre");
+  command
+      .add_option("--magnetisation", options->magnetisation,
+                  "The body is a magnet of so many A/m, X,Y,Z in its axes: its magnetic induction B in tesla too")
+      ->type_name("X,Y,Z")
+      ->check(not_empty());
   command.add_flag("--errors", options->errors,
                    "Instead of the field, relative errors of the series against the polyhedron, by distance and order");
   command.add_option("--orders", options->orders, "Orders of --errors, such as 0..4,8")

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -42,13 +43,30 @@ PlaneRequest parse_plane(const std::string& text) {
   return {words[0][0] - 'x', parse_reach("--plane", words[1]), parse_reach("--plane", words[2]), *count};
 }
 
+GridRequest parse_grid(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  const auto count = comma == std::string::npos
+                         ? std::nullopt
+                         : read_whole(std::string_view(text).substr(comma + 1), 2, most_along_grid);
+  if (!count)
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("--grid {}: it takes EXTENT,N: how far it goes from the origin to all six sides, and 2 to {} "
+                    "points along each axis; such as 2R,51",
+                    shown(text), most_along_grid));
+  return {parse_reach("--grid", text.substr(0, comma)), *count};
+}
+
 } // namespace
 
 PlaceRequest parse_places(const PlaceOptions& options) {
-  const int given = int(!options.at.empty()) + int(!options.sphere.empty()) + int(!options.plane.empty());
+  const int given = int(!options.at.empty()) + int(!options.sphere.empty()) + int(!options.plane.empty()) +
+                    int(!options.grid.empty());
   if (given != 1)
-    throw Error(Fault::bad_argument, "--at, --sphere or --plane says where the potential is wanted: give one of them");
+    throw Error(Fault::bad_argument,
+                "--at, --sphere, --plane or --grid says where the potential is wanted: give one of them");
   if (!options.sphere.empty()) return SphereRequest{parse_reach("--sphere", options.sphere), options.resolution};
+  if (!options.grid.empty()) return parse_grid(options.grid);
   if (!options.plane.empty()) return parse_plane(options.plane);
   if (const auto point = parse_point(options.at)) return PointsRequest{{*point}, options.at};
   std::error_code none;

@@ -13,7 +13,7 @@ namespace cowgpu::cli {
 namespace {
 
 struct Options {
-  std::string result, mesh, output;
+  std::string result, mesh, values, output;
   std::vector<std::string> physics;
   int order = -1;
 };
@@ -30,6 +30,7 @@ void run(const Options& options, const Common& common) {
                 fmt::format("-o {}: the page is HTML, and its name must end in .html", options.output));
   refuse_same_file(options.result, options.output);
   refuse_mesh_as_output(options.mesh, options.output);
+  if (!options.values.empty()) refuse_same_file(options.values, options.output);
   for (const std::string& path : options.physics) refuse_same_file(path, options.output);
   const std::string page = read_page();
   AtomicFile file(options.output);
@@ -37,6 +38,7 @@ void run(const Options& options, const Common& common) {
   ReportRequest request;
   request.result = options.result;
   if (!options.mesh.empty()) request.mesh = load_mesh(options.mesh);
+  request.values = options.values;
   request.physics = options.physics;
   if (options.order >= 0) request.order = options.order;
   request.command = common.command;
@@ -71,6 +73,10 @@ void add_report(Command& app, Common& common) {
   command
       ->add_option("--mesh", options->mesh, "The true body, to show beside and to take distances from. " + mesh_help())
       ->type_name("MESH");
+  command
+      ->add_option("--values", options->values,
+                   "FILE.csv of `cowgpu surface`: values at the faces or vertices of that mesh, shown on it in colours")
+      ->type_name("FILE");
   command
       ->add_option("--physics", options->physics,
                    "What `cowgpu tensors --json`, `radiate --json` and the like printed; several times for several")

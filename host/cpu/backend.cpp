@@ -7,6 +7,7 @@
 #include "host/cpu/moments.hpp"
 #include "host/cpu/moments_kernel.hpp"
 #include "host/cpu/peak.hpp"
+#include "host/cpu/polyhedron.hpp"
 #include "host/cpu/potential.hpp"
 #include "host/cpu/render.hpp"
 #include "host/cpu/sample.hpp"
@@ -61,6 +62,9 @@ public:
   }
   std::unique_ptr<ExteriorPotential> exterior_potential(const PotentialProblem& problem) const override {
     return cpu::exterior_potential(problem, threads_);
+  }
+  std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem) const override {
+    return cpu::polyhedron(problem, threads_);
   }
   Image render(const RenderScene& scene, Monitor& monitor) override { return cpu::render(scene, threads_, monitor); }
   double measured_peak() override { return cpu::peak(threads_); }

@@ -1,4 +1,6 @@
 #include "host/figures/figures.hpp"
+
+#include "host/colour_scale.hpp"
 #include "host/figures/mollweide.hpp"
 #include "host/figures/scene.hpp"
 #include "host/map/sample_fields.hpp"
@@ -54,7 +56,7 @@ plot::Range range_of(const SphereGrid& grid, std::span<const double> on_sphere, 
 
 Colour reflectance(const plot::Ink& ink) {
   // Less than all light, so that what is lit fully does not turn white.
-  const auto channel = [](double c) { return float(0.8 * plot::to_linear(c)); };
+  const auto channel = [](double c) { return float(0.8 * to_linear(c)); };
   return {channel(ink.r), channel(ink.g), channel(ink.b)};
 }
 

@@ -6,6 +6,7 @@
 #include "host/flow/streamlines.hpp"
 #include "host/map/sphere_map.hpp"
 #include "host/mesh/raw_mesh.hpp"
+#include "host/mesh_values.hpp"
 #include "host/multipoles.hpp"
 #include "host/physics/tip.hpp"
 #include "host/plot/canvas.hpp"
@@ -77,6 +78,12 @@ struct TippedBody {
 /// its left. The push F_T at p_T, at right angles to the ray q from the pivot p through the barycentre b, and the ground's force
 /// F_N at p; arrows say where forces act and where to, not how large they are. PNG. Throws what Backend::render throws.
 plot::Canvas tipping_figure(std::span<const TippedBody> bodies, Backend& backend, Monitor& monitor);
+
+/// A quantity on a body, in colours with their scale: shown_column(values, colour), over colour_range() of it. From several sides
+/// where no view is named, all to one scale, with the mesh's axes. Of SVG, the bodies are a picture in it. Throws
+/// Error(bad_argument) for values at points without faces, what check(values), shown_column() and Backend::render throw.
+plot::Canvas surface_values_figure(plot::PictureFormat format, const MeshValues& values, const std::string& colour,
+                                   std::span<const View> views, Backend& backend, Monitor& monitor);
 
 /// A place in a plane: along Plane::u() and Plane::v().
 struct PlanePoint {

@@ -8,6 +8,7 @@
 #include "host/gpu/errors.hpp"
 #include "host/gpu/flow.hpp"
 #include "host/gpu/moments.hpp"
+#include "host/gpu/polyhedron.hpp"
 #include "host/gpu/potential.hpp"
 #include "host/gpu/render.hpp"
 #include "host/gpu/sample.hpp"
@@ -65,6 +66,10 @@ public:
 
   std::unique_ptr<ExteriorPotential> exterior_potential(const PotentialProblem& problem) const override {
     return gpu::exterior_potential(gpu_, iteration_budget_, problem);
+  }
+
+  std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem) const override {
+    return gpu::polyhedron(gpu_, shape_, iteration_budget_, problem);
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {

@@ -26,8 +26,10 @@ std::string mended(const std::string& text) {
   return nlohmann::json::parse(whole.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)).get<std::string>();
 }
 
-std::uint64_t bytes_of(const TriangleSurface& surface) {
-  return surface.vertices.size() * (24 + 4 * surface.scalars.size()) + surface.faces.size() * sizeof(Face);
+std::uint64_t bytes_of(const GlbPart& part) {
+  const TriangleSurface& surface = *part.surface;
+  return surface.vertices.size() * (24 + 4 * surface.scalars.size()) + part.colours.size() * 8 +
+         surface.faces.size() * sizeof(Face);
 }
 
 class Scene {
@@ -37,13 +39,6 @@ public:
     model_.asset.generator = std::string("cowgpu ") + version;
     facts_["length_unit"] = tinygltf::Value(mended(about.length_unit));
     for (const auto& [key, text] : about.facts) facts_[mended(key)] = tinygltf::Value(mended(text));
-    tinygltf::Material material;
-    material.name = "matt";
-    material.pbrMetallicRoughness.baseColorFactor = {0.61, 0.53, 0.43, 1};
-    material.pbrMetallicRoughness.metallicFactor = 0;
-    material.pbrMetallicRoughness.roughnessFactor = 0.8;
-    material.doubleSided = true;
-    model_.materials.push_back(std::move(material));
     model_.buffers.resize(1);
     model_.scenes.resize(1);
     model_.defaultScene = 0;
@@ -59,12 +54,13 @@ public:
 
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.material = 0;
+    primitive.material = material(!part.colours.empty());
     primitive.indices = indices(surface);
     primitive.attributes["POSITION"] = vectors(surface, surface.vertices, shift, true);
     primitive.attributes["NORMAL"] =
         surface.normals.empty() ? vectors(surface, vertex_normals(surface.vertices, surface.faces), Vec3::Zero(), false)
                                 : vectors(surface, surface.normals, Vec3::Zero(), false);
+    if (!part.colours.empty()) primitive.attributes["COLOR_0"] = colours(part.colours);
     for (const VertexScalar& scalar : surface.scalars) {
       std::string attribute = "_" + scalar.name;
       for (char& c : attribute)
@@ -100,6 +96,22 @@ public:
   }
 
 private:
+  /// Number of the material, made when it is first asked for.
+  int material(bool white) {
+    const std::string name = white ? "matt white" : "matt";
+    for (std::size_t i = 0; i < model_.materials.size(); ++i)
+      if (model_.materials[i].name == name) return int(i);
+    tinygltf::Material material;
+    material.name = name;
+    material.pbrMetallicRoughness.baseColorFactor = {0.61, 0.53, 0.43, 1};
+    if (white) material.pbrMetallicRoughness.baseColorFactor = {1, 1, 1, 1};
+    material.pbrMetallicRoughness.metallicFactor = 0;
+    material.pbrMetallicRoughness.roughnessFactor = 0.8;
+    material.doubleSided = true;
+    model_.materials.push_back(std::move(material));
+    return int(model_.materials.size()) - 1;
+  }
+
   /// A buffer view on bytes put at the end of the buffer; every view is a multiple of four bytes long.
   int view(const void* data, std::size_t bytes, int target) {
     auto& buffer = model_.buffers[0].data;
@@ -166,6 +178,19 @@ private:
                     TINYGLTF_COMPONENT_TYPE_FLOAT, values.size());
   }
 
+  int colours(std::span<const Colour> values) {
+    std::vector<std::uint16_t> flat;
+    flat.reserve(4 * values.size());
+    for (const Colour& colour : values) {
+      for (const float c : colour) flat.push_back(std::uint16_t(65535 * std::clamp(c, 0.0F, 1.0F) + 0.5F));
+      flat.push_back(65535);
+    }
+    const int id = accessor(view(flat.data(), flat.size() * sizeof(std::uint16_t), TINYGLTF_TARGET_ARRAY_BUFFER),
+                            TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, values.size());
+    model_.accessors[std::size_t(id)].normalized = true;
+    return id;
+  }
+
   tinygltf::Model model_;
   tinygltf::Value::Object facts_;
 };
@@ -179,7 +204,11 @@ void write_glb(std::span<const GlbPart> parts, const GlbAbout& about, AtomicFile
     check(*part.surface);
     if (part.surface->faces.empty())
       throw Error(Fault::mesh_empty, fmt::format("{}: a surface without faces cannot be written", part.surface->name));
-    bytes += bytes_of(*part.surface);
+    if (!part.colours.empty() && part.colours.size() != part.surface->vertices.size())
+      throw Error(Fault::bad_argument,
+                  fmt::format("{}: {} colours for {} vertices; there must be one each", part.surface->name,
+                              part.colours.size(), part.surface->vertices.size()));
+    bytes += bytes_of(part);
   }
   if (bytes > largest_file)
     throw Error(Fault::too_large,

@@ -33,6 +33,10 @@ std::vector<Column> columns_of(const PotentialTable& table) {
       columns.push_back({fmt::format("{}{}", letter, names[c]), table.tensor_unit,
                          [&f, c](std::size_t i) { return f.hessian[i][c]; }});
     }
+  if (!table.induction.empty())
+    for (int c = 0; c < 3; ++c)
+      columns.push_back(
+          {fmt::format("b_{}", "xyz"[c]), "T", [&table, c](std::size_t i) { return table.induction[i][c]; }});
   if (!table.exact.empty()) columns.push_back({"exact", "1", [&](std::size_t i) { return double(table.exact[i]); }});
   return columns;
 }
@@ -63,6 +67,8 @@ void write_netcdf(const PotentialTable& table, AtomicFile& file, const Monitor& 
   NetcdfWriter out;
   std::vector<int> dimensions;
   int latitude = 0, longitude = 0;
+  std::array<int, 3> sides{};
+  const bool lattice = table.lattice[0] > 0;
   if (table.grid) {
     dimensions = {out.dimension("lat", std::size_t(table.grid->rings)),
                   out.dimension("lon", std::size_t(table.grid->ring_length))};
@@ -71,10 +77,18 @@ void write_netcdf(const PotentialTable& table, AtomicFile& file, const Monitor& 
     out.attribute(latitude, "units", "degrees_north");
     out.attribute(longitude, "units", "degrees_east");
     out.attribute(NetcdfWriter::global, "radius", table.radius);
+  } else if (lattice) {
+    for (int c = 2; c >= 0; --c) {
+      const std::string name(1, "xyz"[c]);
+      dimensions.push_back(out.dimension(name, std::size_t(table.lattice[std::size_t(c)])));
+      sides[std::size_t(c)] = out.variable(name, Type::real, std::span(dimensions).last(1));
+      out.attribute(sides[std::size_t(c)], "units", table.length_unit);
+    }
   } else {
     dimensions = {out.dimension("point", table.points.size())};
   }
-  const std::vector<Column> columns = columns_of(table);
+  std::vector<Column> columns = columns_of(table);
+  if (lattice) columns.erase(columns.begin(), columns.begin() + 3); // x, y and z
   std::vector<int> ids;
   for (const Column& column : columns) {
     ids.push_back(out.variable(column.name, Type::real, dimensions));
@@ -90,6 +104,16 @@ void write_netcdf(const PotentialTable& table, AtomicFile& file, const Monitor& 
     values.clear();
     for (int j = 0; j < table.grid->ring_length; ++j) values.push_back(table.grid->longitude_degrees(j));
     out.values(longitude, values);
+  }
+  if (lattice) {
+    std::size_t stride = 1;
+    for (int c = 0; c < 3; ++c) {
+      const auto n = std::size_t(table.lattice[std::size_t(c)]);
+      values.clear();
+      for (std::size_t i = 0; i < n; ++i) values.push_back(table.points[i * stride][c]);
+      out.values(sides[std::size_t(c)], values);
+      stride *= n;
+    }
   }
   values.resize(table.points.size());
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -110,7 +134,7 @@ void write_potentials(const PotentialTable& table, FileFormat format, AtomicFile
 }
 
 std::uint64_t potential_file_bytes(std::uint64_t points) {
-  return 2 * 8 * 16 * points + (1 << 20); // netCDF keeps an image of the file
+  return 2 * 8 * 19 * points + (1 << 20); // netCDF keeps an image of the file
 }
 
 } // namespace cowgpu

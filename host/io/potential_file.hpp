@@ -1,8 +1,10 @@
 // Potentials at points, in files.
 //
 // CSV: lines "# key value" (cowgpu, input, potential, acceleration, gradient: the units), then the names x,y,z,potential,
-//   ax,ay,az,axx,axy,axz,ayy,ayz,azz (of charges: ex ... ezz) and, where some points are the polyhedron's, exact (1 or 0).
-// netCDF: the same as variables over `point`, or over (lat, lon) for a sphere, whose radius is the attribute `radius`.
+//   ax,ay,az,axx,axy,axz,ayy,ayz,azz (of charges: ex ... ezz), of magnets b_x,b_y,b_z and, where some points are the
+//   polyhedron's, exact (1 or 0).
+// netCDF: the same as variables over `point`, over (lat, lon) for a sphere, whose radius is the attribute `radius`, or over
+//   (z, y, x) for a lattice, whose coordinates are the variables z, y and x.
 #pragma once
 
 #include "host/io/atomic_file.hpp"
@@ -11,6 +13,7 @@
 #include "host/potential.hpp"
 #include "host/sphere_grid.hpp"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -29,8 +32,10 @@ struct PotentialTable {
   std::span<const std::uint8_t> exact; ///< empty: none is
   bool charge = false;                 ///< ex ... instead of ax ...
   std::string length_unit, potential_unit, force_unit, tensor_unit;
-  std::optional<SphereGrid> grid; ///< where the points are one, ring by ring
-  double radius = 0;              ///< radius of that sphere
+  std::optional<SphereGrid> grid;    ///< where the points are one, ring by ring
+  double radius = 0;                 ///< radius of that sphere
+  std::span<const Vec3> induction{}; ///< B in tesla; empty: not of a magnet
+  std::array<int, 3> lattice{};      ///< points along x, y and z where they are one, x running fastest; zeros elsewhere
 };
 
 /// Writes either format; commit() is left to the caller. Throws Error(cannot_write, too_large, interrupted).

@@ -1,6 +1,7 @@
 #include "host/mesh/builtin.hpp"
 
 #include "host/error.hpp"
+#include "host/mesh/builtin_asteroid.hpp"
 #include "host/mesh/builtin_cow.hpp"
 #include "host/mesh/subdivide.hpp"
 #include "host/number.hpp"
@@ -15,6 +16,7 @@ namespace cowgpu {
 namespace {
 
 constexpr double smallest_size = 1e-30, largest_size = 1e30, largest_ratio = 1e6;
+constexpr std::uint32_t largest_seed = 0xffffffff;
 
 using Sizes = std::vector<double>;
 
@@ -24,6 +26,7 @@ struct Kind {
   Sizes default_sizes; ///< empty where sizes must be given
   unsigned max_level, default_level;
   RawMesh (*make)(const Sizes& sizes, unsigned level);
+  bool seeded = false; ///< the one size is a seed, a whole number
 };
 
 RawMesh split(RawMesh mesh, unsigned level) {
@@ -63,6 +66,14 @@ RawMesh make_ellipsoid(const Sizes& semi_axes, unsigned level) {
 
 RawMesh make_sphere(const Sizes& radius, unsigned level) {
   return make_ellipsoid({radius[0], radius[0], radius[0]}, level);
+}
+
+RawMesh make_asteroid(const Sizes& seed, unsigned level) {
+  return asteroid(make_sphere({1}, level), std::uint64_t(seed[0]));
+}
+
+RawMesh make_binary(const Sizes& seed, unsigned level) {
+  return contact_binary(make_sphere({1}, level), std::uint64_t(seed[0]));
 }
 
 RawMesh make_box(const Sizes& edges, unsigned level) {
@@ -111,6 +122,22 @@ const std::vector<Kind>& kinds() {
        12,
        0,
        make_tetrahedron},
+      {{"asteroid", "asteroid[:SEED][@LEVEL]",
+        "a rough, cratered body about 2.5 units long, another one for each SEED (1); level 0 to 9 (5)"},
+       1,
+       {1},
+       9,
+       5,
+       make_asteroid,
+       true},
+      {{"binary", "binary[:SEED][@LEVEL]",
+        "two such bodies grown together, about 2.6 units long, by SEED (1); level 0 to 9 (5)"},
+       1,
+       {1},
+       9,
+       5,
+       make_binary,
+       true},
   };
   return table;
 }
@@ -148,6 +175,11 @@ const Kind& find_kind(std::string_view name, const Refusal& refuse) {
 
 Sizes read_sizes(std::string_view text, const Kind& kind, const Refusal& refuse) {
   const std::string use = "Write builtin:" + kind.help.usage + ".";
+  if (kind.seeded) {
+    const std::optional<std::uint32_t> seed = read_whole(text, std::uint32_t{0}, largest_seed);
+    if (!seed) refuse("the seed " + quoted(text) + " is not a whole number from 0 to 4294967295.", use);
+    return {double(*seed)};
+  }
   if (kind.n_sizes == 0) refuse("a " + kind.help.name + " takes no sizes.", use);
   Sizes sizes;
   for (bool more = true; more;) {

@@ -25,10 +25,11 @@ inline constexpr std::uint64_t builtin_face_limit = std::uint64_t{1} << 26;
 
 /// Makes a body. `spec` is what follows "builtin:", in this grammar, without spaces:
 ///
-///     spec   = name [":" size {"," size}] ["@" level]
-///     name   = "cow" | "sphere" | "ellipsoid" | "box" | "tetrahedron"
+///     spec   = name [":" (size {"," size} | seed)] ["@" level]
+///     name   = "cow" | "sphere" | "ellipsoid" | "box" | "tetrahedron" | "asteroid" | "binary"
 ///     size   = a decimal number as C++ writes it ("2", "0.5", "1e-3"), from 1e-30 to 1e30; the sizes of one body
 ///              differ by a factor of at most 1e6
+///     seed   = decimal digits, from 0 to 4294967295
 ///     level  = decimal digits
 ///
 ///     body         sizes              levels   default      faces at level L, and how they are made
@@ -37,9 +38,11 @@ inline constexpr std::uint64_t builtin_face_limit = std::uint64_t{1} << 26;
 ///     ellipsoid    semi-axes x, y, z  0 .. 9   @4           20 4^L: the sphere's vertices, scaled; sizes required
 ///     box          edges x, y, z      0 .. 11  :1,1,1@0     12 4^L: split at midpoints, the surface unchanged
 ///     tetrahedron  edge               0 .. 12  :1@0         4 4^L: regular, split at midpoints, likewise
+///     asteroid     seed               0 .. 9   :1@5         20 4^L: asteroid() of the sphere (builtin_asteroid.hpp)
+///     binary       seed               0 .. 9   :1@5         20 4^L: contact_binary() of the sphere
 ///
-/// Lengths are in the body's own unit. All but the cow are centred on the origin; for the cow's axes and origin see
-/// builtin_cow.hpp. Every vertex of the sphere lies on it, so its volume is less than 4/3 pi R^3, by an amount of order
+/// Lengths are in the body's own unit. All but the cow, the asteroid and the binary are centred on the origin, which is inside
+/// these two; for the cow's axes and origin see builtin_cow.hpp. Every vertex of the sphere lies on it, so its volume is less than 4/3 pi R^3, by an amount of order
 /// 4^-L. Every body is closed, 2-manifold, of genus 0, counter-clockwise seen from outside, and made without sine
 /// or cosine, so the vertices do not depend on the mathematical library.
 ///

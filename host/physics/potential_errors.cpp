@@ -1,7 +1,7 @@
 #include "host/error.hpp"
 #include "host/mass/mass_moments.hpp"
 #include "host/parallel.hpp"
-#include "host/physics/polyhedron.hpp"
+#include "host/physics/body_field.hpp"
 #include "host/physics/potential.hpp"
 #include "host/physics/potential_terms.hpp"
 #include "host/sphere_directions.hpp"

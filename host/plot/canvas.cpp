@@ -277,8 +277,6 @@ Box Canvas::text_box(const Point& at, std::string_view text, const TextStyle& st
 }
 
 void Canvas::picture(const Image& image, const Box& box) {
-  if (page_->format != PictureFormat::png)
-    throw Error(Fault::bad_argument, "pictures of pixels can be put on PNG pages only");
   if (image.width < 1 || image.height < 1) return;
   cairo_surface_t* const pixels = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, image.width, image.height);
   const auto release = [](cairo_surface_t* surface) { cairo_surface_destroy(surface); };

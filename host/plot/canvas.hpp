@@ -95,7 +95,7 @@ public:
   TextSize measure(std::string_view text, const TextStyle& style = {}) const;
   /// The box of a text that is not turned.
   Box text_box(const Point& at, std::string_view text, const TextStyle& style) const;
-  /// Scaled to fill the box.
+  /// Scaled to fill the box. An SVG has its pixels inside.
   void picture(const Image& image, const Box& box);
   /// Until end_clip() nothing is drawn outside.
   void clip(const Box& box);

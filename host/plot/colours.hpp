@@ -21,11 +21,7 @@ inline constexpr Ink blue = {0, 114 / 255.0, 178 / 255.0}, vermilion = {213 / 25
 /// Of the i-th line of a plot: the above and black, over and over.
 Ink line_colour(std::size_t i);
 
-/// The scale viridis (S. van der Walt and N. Smith, 2015; CC0), perceptually uniform and rising in lightness, to 1/255 of a
-/// channel: 0 dark violet, 1 yellow. Beyond 0 and 1 the ends go on; grey for NaN.
+/// The scale viridis (host/colour_scale.hpp).
 Ink viridis(double t);
-
-/// The linear value (0 to 1) of a channel in sRGB, IEC 61966-2-1.
-double to_linear(double srgb);
 
 } // namespace cowgpu::plot

@@ -1,6 +1,7 @@
 #include "host/report/page.hpp"
 
 #include "host/coefficient_set.hpp"
+#include "host/colour_scale.hpp"
 #include "host/error.hpp"
 #include "host/io/document_json.hpp"
 #include "host/io/file.hpp"
@@ -120,6 +121,26 @@ ordered_json mesh_json(const PageDocument& document) {
   return {{"name", document.mesh_name}, {"vertices", base64(places)}, {"faces", base64(corners)}};
 }
 
+ordered_json values_json(const MeshValues* values) {
+  if (!values) return nullptr;
+  ordered_json columns = ordered_json::array();
+  for (const ValueColumn& column : values->columns) {
+    const ColourRange range = colour_range(numbers_of(column));
+    columns.push_back({{"name", column.name},
+                       {"unit", column.unit},
+                       {"meaning", column.meaning},
+                       {"components", column.components},
+                       {"range", {range.low, range.high}},
+                       {"values", base64(std::vector<float>(column.values.begin(), column.values.end()))}});
+  }
+  std::vector<float> places;
+  for (const Vec3& place : values->places)
+    for (int c = 0; c < 3; ++c) places.push_back(float(place[c]));
+  return {{"place", name_of(values->place)},         {"length_unit", values->length_unit},
+          {"shown", shown_column(*values, "").name}, {"places", base64(places)},
+          {"columns", std::move(columns)},           {"notes", values->notes}};
+}
+
 /// JSON, whose '<', '>' and '&' stand in strings only, without them.
 void append_escaped(std::string& to, std::string_view text) {
   for (const char c : text)
@@ -221,6 +242,7 @@ std::string page_data(const PageDocument& document) {
   head["mass"] =
       expansions.contains(mass_expansion) ? mass_json(name, expansions.at(mass_expansion)) : ordered_json(nullptr);
   head["mesh"] = mesh_json(document);
+  head["values"] = values_json(document.values);
   head["order_names"] = ordered_json::array();
   for (int l = 0; l <= order; ++l) head["order_names"].push_back(order_name(l));
   std::string text;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/io/atomic_file.hpp"
+#include "host/mesh_values.hpp"
 #include "host/spectrum/reconstruct.hpp"
 #include "host/types.hpp"
 
@@ -42,6 +43,7 @@ struct PageDocument {
   std::string mesh_name;          ///< name of the true body's mesh; empty where it is not known
   std::span<const Vec3> vertices; ///< vertices of the true body, where it is shown
   std::span<const Face> faces;
+  const MeshValues* values = nullptr;          ///< values at the faces or vertices of that mesh, or null
   std::vector<nlohmann::ordered_json> physics; ///< documents of `cowgpu tensors`, `radiate` ...
   std::vector<std::string> notes;
   std::vector<std::string> command;
@@ -59,7 +61,7 @@ std::vector<std::filesystem::path> page_folders();
 std::string read_page();
 
 /// The data as JSON, safe inside a <script> element: no '<', '>' or '&' is in it. Lists of numbers are base64 of
-/// little-endian doubles (coefficients by field, m, l; re, im), floats (vertices), 32-bit integers (faces) and bytes
+/// little-endian doubles (coefficients by field, m, l; re, im), floats (vertices, values), 32-bit integers (faces) and bytes
 /// (distances). Results with an expansion `mass` have its multipoles to the largest order beside the surfaces. Throws
 /// Error(file_format) for members a result must have.
 std::string page_data(const PageDocument& document);

@@ -30,6 +30,7 @@ void add_one_point(const PotentialResult& s, const FieldUnits& units, Findings& 
     tensor << h[0], h[1], h[2], h[1], h[3], h[4], h[2], h[4], h[5];
     found.rows.push_back({"gradient", fmt::format("gradient of the {}", force_name(s)), tensor, units.tensor});
   }
+  if (!s.induction.empty()) found.rows.push_back({"induction", "magnetic induction B", s.induction[0], "T"});
   if (!s.density.empty())
     found.rows.push_back(
         {"density", "density at the place", s.density[0], s.si ? (s.law.charge ? "C/m^3" : "kg/m^3") : "of the body"});
@@ -39,6 +40,12 @@ void add_ranges(const PotentialResult& s, const FieldUnits& units, Findings& fou
   const auto [least, most] = std::minmax_element(s.field.value.begin(), s.field.value.end());
   found.rows.push_back({"potential_min", "least potential", *least, units.potential});
   found.rows.push_back({"potential_max", "greatest potential", *most, units.potential});
+  if (!s.induction.empty()) {
+    const auto size = [](const Vec3& a, const Vec3& b) { return a.norm() < b.norm(); };
+    const auto [weak, strong] = std::minmax_element(s.induction.begin(), s.induction.end(), size);
+    found.rows.push_back({"induction_min", "least magnetic induction B", weak->norm(), "T"});
+    found.rows.push_back({"induction_max", "greatest magnetic induction B", strong->norm(), "T"});
+  }
   if (s.field.gradient.empty()) return;
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (const Vec3& g : s.field.gradient) {
@@ -64,6 +71,8 @@ void add_table(const PotentialResult& s, const FieldUnits& units, std::size_t mo
   if (!s.field.hessian.empty())
     for (const char* c : {"xx", "xy", "xz", "yy", "yz", "zz"})
       table.columns.push_back({fmt::format("{}{}", letter, c), units.tensor});
+  if (!s.induction.empty())
+    for (const char* c : {"b_x", "b_y", "b_z"}) table.columns.push_back({c, "T"});
   table.columns.push_back({"exact"});
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3& p = s.points[i];
@@ -71,6 +80,8 @@ void add_table(const PotentialResult& s, const FieldUnits& units, std::size_t mo
     if (!s.field.gradient.empty())
       for (int c = 0; c < 3; ++c) row.emplace_back(s.field.gradient[i][c]);
     if (!s.field.hessian.empty()) row.insert(row.end(), s.field.hessian[i].begin(), s.field.hessian[i].end());
+    if (!s.induction.empty())
+      for (int c = 0; c < 3; ++c) row.emplace_back(s.induction[i][c]);
     row.emplace_back(!s.exact.empty() && s.exact[i] != 0);
     table.rows.push_back(row);
   }
@@ -118,6 +129,11 @@ void add_head(const PotentialResult& s, const FieldUnits& units, Findings& found
                     s.law.charge ? "k" : "G"));
   if (s.law.charge)
     found.notes.push_back("densities are of charge: potential k Q/r, field -grad of it, away from positive charges");
+  if (s.magnetisation)
+    found.notes.push_back(
+        "the magnetisation is the given one times the density, 1 in the mesh; B = mu_0 (H + M), from the "
+        "second derivatives of the potential of that density; potential and acceleration are those of "
+        "gravity");
   if (!s.origin_known) found.notes.push_back("the file does not say its origin: places are counted from it");
   add_exact_notes(s, found);
   if (const double rest = std::pow(s.nearest, -(s.lmax + 1));
@@ -152,6 +168,7 @@ void add_head(const PotentialResult& s, const FieldUnits& units, Findings& found
                           std::isfinite(s.exact_error) ? Value(s.exact_error) : Value(), "",
                           "none: the potential is 0"});
   }
+  if (s.magnetisation) found.rows.push_back({"magnetisation", "magnetisation", *s.magnetisation, "A/m"});
   if (s.reference_radius)
     found.rows.push_back({"reference_radius", "reference radius of the file", *s.reference_radius, units.length});
 }
@@ -210,8 +227,8 @@ Findings findings(const PotentialResult& s, std::size_t most_points) {
 
 PotentialTable potential_table(const PotentialResult& s) {
   const FieldUnits units = field_units(s);
-  return {s.subject.name,  s.points,    s.field,      s.exact, s.law.charge,   units.length,
-          units.potential, units.force, units.tensor, s.grid,  s.sphere_radius};
+  return {s.subject.name, s.points,     s.field, s.exact,         s.law.charge, units.length, units.potential,
+          units.force,    units.tensor, s.grid,  s.sphere_radius, s.induction,  s.lattice};
 }
 
 Findings findings(const SeriesErrorsResult& result) {

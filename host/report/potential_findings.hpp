@@ -2,10 +2,12 @@
 #pragma once
 
 #include "host/io/potential_file.hpp"
+#include "host/physics/body_field.hpp"
 #include "host/physics/findings.hpp"
 #include "host/physics/potential.hpp"
 #include "host/sphere_grid.hpp"
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -34,13 +36,17 @@ struct PotentialResult {
   std::vector<Vec3> points;
   std::optional<SphereGrid> grid; ///< grid of a sphere, its points ring by ring
   double sphere_radius = 0;       ///< radius of that sphere
+  std::array<int, 3> lattice{};   ///< points along x, y and z of a lattice, x running fastest; zeros elsewhere
   PotentialField field;
-  std::vector<std::uint8_t> exact;                          ///< 1 where it is the closed form's; empty: nowhere
-  std::vector<double> density;                              ///< where exact
-  std::size_t exact_points = 0, far_points = 0;             ///< by the polyhedron; where its series was better
-  double exact_error = 0;                                   ///< estimated, the largest of these points
-  double nearest = std::numeric_limits<double>::infinity(); ///< nearest point of the series, in radii
-  std::string device;                                       ///< what computed it, in words
+  std::optional<Vec3> magnetisation;                         ///< A/m, of a magnet
+  std::vector<Vec3> induction;                               ///< its B in tesla
+  std::vector<std::uint8_t> exact;                           ///< 1 where it is the closed form's; empty: nowhere
+  std::vector<double> density;                               ///< where exact
+  std::size_t exact_points = 0, far_points = 0;              ///< by the polyhedron; where its series was better
+  physics::FieldSum exact_sum = physics::FieldSum::extended; ///< how the closed form was summed
+  double exact_error = 0;                                    ///< estimated, the largest of these points
+  double nearest = std::numeric_limits<double>::infinity();  ///< nearest point of the series, in radii
+  std::string device;                                        ///< what computed it, in words
 
   bool radius_known() const { return radius_note.empty(); }
 };

@@ -1,10 +1,12 @@
 #include "host/requests/figure.hpp"
 
 #include "host/error.hpp"
+#include "host/io/mesh_values_read.hpp"
 #include "host/mass/mass_moments.hpp"
 #include "host/mesh/topology.hpp"
 #include "host/physics/tip.hpp"
 #include "host/requests/limits.hpp"
+#include "host/requests/surface_gravity.hpp"
 #include "host/requests/surface_source.hpp"
 
 #include <fmt/format.h>
@@ -128,17 +130,37 @@ plot::Canvas draw(const Drawing& on, std::vector<std::string>& left_out) {
   }
 }
 
+// Values that are in a file, on the mesh, or those of its faces where it rests.
+MeshValues values_of(const FigureRequest& request, Backend& backend, Monitor& monitor) {
+  if (!request.values.empty()) {
+    MeshValues values = read_mesh_values(request.values);
+    put_on(values, request.mesh.vertices, request.mesh.faces);
+    return values;
+  }
+  SurfaceGravityRequest gravity;
+  gravity.body.mesh = request.mesh_name;
+  gravity.threads = request.threads;
+  return surface_gravity(plan_surface_gravity(std::move(gravity), monitor), backend, monitor).values;
+}
+
+plot::Canvas of_values(const FigureRequest& request, Backend& backend, Monitor& monitor) {
+  const MeshValues values = values_of(request, backend, monitor);
+  return figures::surface_values_figure(request.format, values, request.colour, request.views, backend, monitor);
+}
+
 bool of_one_map(FigureKind kind) {
   return kind == FigureKind::orders || kind == FigureKind::components || kind == FigureKind::definition;
 }
 
 } // namespace
 
-bool lines_alone(FigureKind kind) {
-  return kind == FigureKind::spectra || kind == FigureKind::definition || kind == FigureKind::streamlines;
+bool can_be_svg(FigureKind kind) {
+  return kind == FigureKind::spectra || kind == FigureKind::definition || kind == FigureKind::streamlines ||
+         kind == FigureKind::surface;
 }
 
 FigureResult make_figure(FigureRequest request, Backend& backend, Monitor& monitor) {
+  if (request.kind == FigureKind::surface) return {of_values(request, backend, monitor), {}};
   const ExpansionChoice& choice = request.expansions;
   require_member("the figure is", request.kind, FigureKind::tipping);
   require_member("the format is", request.format, plot::PictureFormat::svg);

@@ -18,11 +18,12 @@ enum class FigureKind {
   definition,  ///< what f is, over one map
   inflation,   ///< level sets of the distance
   streamlines, ///< streamlines of its flow
-  tipping      ///< a ball and the body, and what tips them
+  tipping,     ///< a ball and the body, and what tips them
+  surface      ///< a quantity on the body, in colours
 };
 
-/// Whether a figure is lines alone, so that it can be an SVG too.
-bool lines_alone(FigureKind kind);
+/// Whether a figure can be an SVG too: those of lines alone, and the quantity on a body, whose SVG has a picture inside.
+bool can_be_svg(FigureKind kind);
 
 struct FigureRequest {
   FigureKind kind = FigureKind::spectra;
@@ -35,6 +36,12 @@ struct FigureRequest {
   /// Result files of the mesh instead of expansions: one for orders, any number for spectra.
   std::vector<std::string> results;
   View view = {28, 14};
+  std::vector<View> views; ///< of `surface`, in place of `view`; nothing: from several sides
+  /// Of `surface`: the CSV file of values at faces or vertices of the mesh; "": gravity at the faces of the body of density 1
+  /// that does not spin, whose mesh `mesh_name` names as load_mesh() takes it.
+  std::string values, mesh_name;
+  unsigned threads = 0;          ///< of `surface`: threads of what is done on the host; 0: all
+  std::string colour;            ///< of `surface`: the quantity that is shown; "": shown_column()'s choice
   Plane plane;                   ///< plane of streamlines
   std::size_t streamlines = 240; ///< how many
 };

@@ -21,7 +21,7 @@ inline constexpr int least_flow_grid = 64, most_refinements = 5;               /
 inline constexpr double least_tolerance = 1e-12, largest_tolerance = 1e-2;     ///< of the flow
 inline constexpr int least_cells = 4, most_cells = 1024;                       ///< of level surfaces
 inline constexpr std::size_t least_lattice = 2, most_lattice = 4096;           ///< points along a side
-inline constexpr int most_along_plane = 8192;                                  ///< points along a side
+inline constexpr int most_along_plane = 8192, most_along_grid = 1024;          ///< points along a side
 inline constexpr std::size_t most_samples = 100'000'000;                       ///< points of a surface
 inline constexpr unsigned most_sweeps = 1'000'000, most_relabellings = 10'000; ///< of stretch maps
 inline constexpr std::size_t most_streamlines = 1'000'000;

@@ -41,6 +41,23 @@ Places plane(const PlaneRequest& request, const PlaceFrame& frame) {
   return places;
 }
 
+Places lattice(const GridRequest& request, const PlaceFrame& frame) {
+  const double extent = length_of("--grid", request.extent, frame);
+  if (!(extent > 0))
+    throw Error(Fault::bad_argument, fmt::format("--grid: a cube of the extent {} has no points", extent));
+  Places places;
+  const int n = request.count;
+  const double step = 2 * extent / (n - 1);
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        places.points.emplace_back(frame.origin + step * Vec3(i, j, k) - Vec3::Constant(extent));
+  places.lattice = {n, n, n};
+  places.name =
+      fmt::format("lattice of {} x {} x {} points up to {:.6g} from the origin along each axis", n, n, n, extent);
+  return places;
+}
+
 Places sphere(const SphereRequest& request, const PlaceFrame& frame) {
   Places places;
   places.radius = length_of("--sphere", request.radius, frame);
@@ -61,6 +78,10 @@ void check_counts(const PlaceRequest& request) {
       sphere && (sphere->rings < 1 || sphere->rings > largest_grid_degree + 1))
     throw Error(Fault::bad_argument,
                 fmt::format("a sphere of {} rings: there are from 1 to {}", sphere->rings, largest_grid_degree + 1));
+  if (const auto* grid = std::get_if<GridRequest>(&request);
+      grid && (grid->count < 2 || grid->count > most_along_grid))
+    throw Error(Fault::bad_argument,
+                fmt::format("a lattice of {} points a side: there are from 2 to {}", grid->count, most_along_grid));
   const auto* plane = std::get_if<PlaneRequest>(&request);
   if (plane && (plane->axis < 0 || plane->axis > 2 || plane->count < 2 || plane->count > most_along_plane))
     throw Error(Fault::bad_argument,
@@ -76,14 +97,19 @@ std::size_t count_places(const PlaceRequest& request) {
   if (const auto* points = std::get_if<PointsRequest>(&request)) return points->points.size();
   if (const auto* sphere = std::get_if<SphereRequest>(&request))
     return std::size_t(sphere->rings) * std::size_t(2 * sphere->rings + 16);
+  if (const auto* grid = std::get_if<GridRequest>(&request)) {
+    const auto n = std::size_t(grid->count);
+    return n * n * n;
+  }
   const auto n = std::size_t(std::get<PlaneRequest>(request).count);
   return n * n;
 }
 
 Places find_places(const PlaceRequest& request, const PlaceFrame& frame) {
   check_counts(request);
-  if (const auto* points = std::get_if<PointsRequest>(&request)) return {points->name, points->points, {}, 0};
+  if (const auto* points = std::get_if<PointsRequest>(&request)) return {points->name, points->points, {}, 0, {}};
   if (const auto* wanted = std::get_if<SphereRequest>(&request)) return sphere(*wanted, frame);
+  if (const auto* wanted = std::get_if<GridRequest>(&request)) return lattice(*wanted, frame);
   return plane(std::get<PlaneRequest>(request), frame);
 }
 

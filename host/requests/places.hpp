@@ -1,10 +1,11 @@
-// Where a field is asked for: points, a sphere, a plane.
+// Where a field is asked for: points, a sphere, a plane, a lattice.
 #pragma once
 
 #include "host/sphere_grid.hpp"
 #include "host/types.hpp"
 #include "host/units.hpp"
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -38,7 +39,13 @@ struct PlaneRequest {
   int count = 101; ///< points along each side, 2 at least
 };
 
-using PlaceRequest = std::variant<PointsRequest, SphereRequest, PlaneRequest>;
+/// A lattice in a cube about the body's origin along its axes, as far to all six sides.
+struct GridRequest {
+  Reach extent;
+  int count = 51; ///< points along each side, 2 at least
+};
+
+using PlaceRequest = std::variant<PointsRequest, SphereRequest, PlaneRequest, GridRequest>;
 
 /// What a body's places are measured by.
 struct PlaceFrame {
@@ -52,6 +59,7 @@ struct Places {
   std::vector<Vec3> points;       ///< in the body's coordinates
   std::optional<SphereGrid> grid; ///< grid of a sphere, its points ring by ring
   double radius = 0;              ///< radius of that sphere
+  std::array<int, 3> lattice{};   ///< points along x, y and z of a lattice, x running fastest; zeros elsewhere
 };
 
 /// Upper bound of how many points there will be, before any is made. Throws Error(bad_argument) for an axis or a number of

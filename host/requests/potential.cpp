@@ -2,7 +2,8 @@
 
 #include "host/error.hpp"
 #include "host/io/coefficient_content.hpp"
-#include "host/physics/polyhedron.hpp"
+#include "host/physics/body_field.hpp"
+#include "host/physics/magnetisation.hpp"
 #include "host/report/result.hpp"
 #include "host/requests/limits.hpp"
 #include "host/requests/memory.hpp"
@@ -21,6 +22,16 @@ using namespace physics;
 namespace {
 
 constexpr int usual_degree = 32;
+
+// Pairs of faces and points that the closed form is summed for in 80-bit arithmetic, so that all the digits shown are right and
+// the error told is as small as they promise: seconds. Beyond, in double precision.
+constexpr double most_extended_pairs = 5e7;
+
+FieldSum sum_of(const Body& body, std::size_t points) {
+  double faces = double(body.surface.faces().size());
+  for (const Part& part : body.parts) faces += double(part.surface.faces().size());
+  return faces * double(points) <= most_extended_pairs ? FieldSum::extended : FieldSum::device;
+}
 
 void refuse_coefficients(const char* what, const std::string& file) {
   if (is_coefficient_file(file))
@@ -110,7 +121,11 @@ void compute(const LoadedMass& input, const PotentialRequest& request, const Mul
          outside, s.field);
   if (inside.empty()) return;
   const std::vector<Vec3> points = chosen(s.points, inside, Vec3::Zero());
-  ExactField exact = exact_field(*input.mesh, points, derivatives, threads, monitor);
+  s.exact_sum = sum_of(*input.mesh, points.size());
+  const auto cpu = make_cpu_backend(threads);
+  const BodyField closed(*input.mesh, {derivatives, s.exact_sum, threads}, *cpu);
+  check_memory(closed.memory(points.size()), *cpu, "ask for fewer points");
+  BodyFieldValues exact = closed.at(points, monitor);
   take(exact.field, inside, s.field);
   s.exact.assign(count, 0);
   for (std::size_t i = 0; i < inside.size(); ++i) s.exact[inside[i]] = exact.by_series[i] ? 0 : 1;
@@ -120,20 +135,34 @@ void compute(const LoadedMass& input, const PotentialRequest& request, const Mul
   s.density = std::move(exact.density);
 }
 
+void check_magnet(const PotentialRequest& r) {
+  if (!r.magnetisation) return;
+  const auto refuse = [](const std::string& why) { throw Error(Fault::bad_argument, "--magnetisation " + why); };
+  if (!r.magnetisation->allFinite()) refuse("takes three finite numbers, in A/m");
+  if (r.derivatives != Derivatives::second)
+    refuse("is multiplied with second derivatives of the potential: leave --derivatives out");
+  if (r.body.charge) refuse("and --charge are two kinds of bodies: leave one out");
+  if (r.body.density)
+    refuse("says how strong the magnet is: leave --density out, which is 1 then; a --part has its own part "
+           "of the magnetisation, -1 for a hole");
+  refuse_coefficients("--magnetisation", r.body.mesh);
+}
+
 void apply_law(const FieldLaw& law, PotentialField& field) {
   for (double& v : field.value) v = law.potential(v);
   for (Vec3& g : field.gradient) g = law.force(g);
   for (SymmetricTensor& h : field.hessian) h = law.tensor(h);
 }
 
-// What computed the points: the series on a device, the closed form and its series in 80-bit numbers.
+// What computed the points: the series on a device, the closed form and its series on the CPU.
 std::string computed_by(const PotentialResult& s, const Backend& backend, unsigned threads) {
   const std::size_t closed = s.exact_points + s.far_points;
-  const std::string extended =
-      fmt::format("CPU, 80-bit arithmetic, {} threads", threads ? threads : make_cpu_backend(0)->facts().threads);
-  if (closed == s.points.size()) return extended;
+  const std::string exact =
+      fmt::format("CPU, {}, {} threads", s.exact_sum == FieldSum::extended ? "80-bit arithmetic" : "double precision",
+                  threads ? threads : make_cpu_backend(0)->facts().threads);
+  if (closed == s.points.size()) return exact;
   if (closed == 0) return device_line(backend.facts());
-  return fmt::format("series: {}; polyhedron: {}", device_line(backend.facts()), extended);
+  return fmt::format("series: {}; polyhedron: {}", device_line(backend.facts()), exact);
 }
 
 int degree_wanted(const LoadedMass& input, const PotentialRequest& request) {
@@ -153,6 +182,7 @@ PotentialResult potential(const PotentialRequest& request, Backend& backend, uns
   require_member("the derivatives are", request.derivatives, Derivatives::second);
   if (request.exact || request.inside_exact)
     refuse_coefficients(request.exact ? "--exact" : "--inside exact", request.body.mesh);
+  check_magnet(request);
   const LoadedMass loaded = load_mass(request.body, Motion::held, monitor);
   PotentialResult s;
   s.subject = subject(loaded);
@@ -170,14 +200,17 @@ PotentialResult potential(const PotentialRequest& request, Backend& backend, uns
   if (loaded.coefficients) s.reference_radius = *loaded.coefficients->reference_radius * loaded.units.metre;
   const std::size_t count = count_places(request.places);
   MemoryNeed need = backend.exterior_potential({own, s.lmax, request.derivatives})->memory(count);
-  need.host += 64 * count + request.extra_bytes;
+  need.host += (request.magnetisation ? 88 : 64) * count + request.extra_bytes;
   check_memory(need, backend, request.exact ? "ask for fewer points" : "ask for fewer points or a lower --order");
   Places places = find_places(request.places, {s.origin, s.radius, s.si});
   s.places = std::move(places.name);
   s.points = std::move(places.points);
   s.grid = places.grid;
   s.sphere_radius = places.radius;
+  s.lattice = places.lattice;
   compute(loaded, request, own, backend, threads, monitor, s);
+  s.magnetisation = request.magnetisation;
+  if (s.magnetisation) s.induction = magnetic_induction(s.field.hessian, *s.magnetisation);
   apply_law(s.law, s.field);
   s.device = computed_by(s, backend, threads);
   return s;

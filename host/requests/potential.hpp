@@ -6,6 +6,7 @@
 #include "host/requests/places.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace cowgpu {
@@ -17,6 +18,9 @@ struct PotentialRequest {
   Derivatives derivatives = Derivatives::second;
   bool exact = false;        ///< the polyhedron's closed form everywhere, or where it is nearer to the truth its series
   bool inside_exact = false; ///< that inside the sphere that holds the body, where points are refused otherwise
+  /// A/m times the density, in the body's axes: the induction B of the magnetised mesh too. Needs second derivatives, and no
+  /// density for the mesh: it is 1, and parts may have others.
+  std::optional<Vec3> magnetisation;
   std::uint64_t extra_bytes = 0;  ///< memory that the caller needs beside the result
   std::vector<std::string> notes; ///< sentences that come after those about the body
 };

@@ -3,6 +3,7 @@
 #include "host/bounds.hpp"
 #include "host/error.hpp"
 #include "host/io/foreign_file.hpp"
+#include "host/io/mesh_values_read.hpp"
 #include "host/io/result_json.hpp"
 #include "host/io/shown.hpp"
 #include "host/map/map_method.hpp"
@@ -89,6 +90,18 @@ std::unique_ptr<DistanceField> add_mesh(RawMesh mesh, const std::string& file, B
   return backend.distance_field(report.mesh.vertices, report.mesh.faces);
 }
 
+// The values on the mesh, which is there. A page without the mesh has no place for them.
+void add_values(const std::string& file, Report& report) {
+  report.values = read_mesh_values(file);
+  put_on(report.values, report.mesh.vertices, report.mesh.faces);
+  if (report.values.columns.empty())
+    throw Error(Fault::file_format, fmt::format("{}: there are no values beside the places", file));
+  if (report.document.faces.empty())
+    report.document.notes.push_back("the values on the mesh are not in this page, as the mesh itself is not");
+  else
+    report.document.values = &report.values;
+}
+
 // The largest order that is shown.
 int order_of(const ReportRequest& request, const Report& report) {
   int most = 0;
@@ -105,6 +118,9 @@ int order_of(const ReportRequest& request, const Report& report) {
 } // namespace
 
 std::unique_ptr<Report> make_report(ReportRequest request, Backend& backend, Monitor& monitor) {
+  if (!request.values.empty() && !request.mesh)
+    throw Error(Fault::bad_argument,
+                fmt::format("--values {}: name the mesh that they were computed on with --mesh", request.values));
   auto report = std::make_unique<Report>();
   PageDocument& document = report->document;
   report->result = result_json::read(request.result);
@@ -116,6 +132,7 @@ std::unique_ptr<Report> make_report(ReportRequest request, Backend& backend, Mon
   document.grid = make_grid(GridKind::clenshaw_curtis, page_resolution(order));
   std::unique_ptr<DistanceField> field;
   if (request.mesh) field = add_mesh(std::move(*request.mesh), request.result, backend, *report);
+  if (!request.values.empty()) add_values(request.values, *report);
   for (const SurfaceFile& file : report->surfaces) {
     PageSurface surface;
     surface.name = file.name;

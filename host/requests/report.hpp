@@ -23,6 +23,7 @@ inline constexpr int usual_report_order = 32;
 struct ReportRequest {
   std::string result;          ///< the file of a result of `expand`
   std::optional<RawMesh> mesh; ///< the true body, to show beside and to take distances from; placed as the result was
+  std::string values;          ///< the CSV file of values at the faces or vertices of that mesh, or ""
   std::vector<std::string> physics; ///< files of documents that `tensors`, `radiate` and the like make
   std::optional<int> order;         ///< the largest order of the body, up to largest_report_order
   std::vector<std::string> command; ///< the command line, for the page
@@ -37,12 +38,14 @@ struct Report {
   nlohmann::json result;
   std::vector<SurfaceFile> surfaces;
   RawMesh mesh;        ///< empty where none is known
+  MeshValues values;   ///< on that mesh, where a file of them is named
   std::string warning; ///< that the mesh is another one than the result's, or empty; a note of the document too
   PageDocument document;
 };
 
 /// Reads the files, and measures how far the rebuilt bodies are from the mesh. Throws Error(cannot_read, file_format) for
-/// files that are no such documents, bad_argument for an order beyond the expansions, and what DistanceField throws.
+/// files that are no such documents, bad_argument for an order beyond the expansions or
+/// values without a mesh, and what DistanceField throws.
 std::unique_ptr<Report> make_report(ReportRequest request, Backend& backend, Monitor& monitor);
 
 } // namespace cowgpu

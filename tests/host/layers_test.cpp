@@ -73,7 +73,9 @@ const std::vector<std::pair<std::string, std::set<std::string>>> nouns = {
     {"distance_field", {"error", "kernel_time", "memory_need", "monitor", "types"}},
     {"flow", {"kernel_time", "memory_need", "monitor", "types"}},
     {"potential", {"memory_need", "monitor", "multipoles", "run_report", "types"}},
+    {"polyhedron", {"memory_need", "monitor", "potential", "run_report", "types"}},
     {"render", {"error", "number", "types"}},
+    {"mesh_values", {"error", "types"}},
 };
 
 // Headers of host/ that only some rooms may see.

@@ -1,11 +1,14 @@
 #include "host/error.hpp"
+#include "host/io/sha256.hpp"
 #include "host/mesh/builtin.hpp"
 #include "host/mesh/builtin_cow.hpp"
+#include "host/mesh/self_intersections.hpp"
 #include "host/mesh/subdivide.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -137,11 +140,53 @@ RawMesh single_triangle() {
 } // namespace
 
 TEST_CASE("every built-in body is closed, 2-manifold, of genus 0, and looks outward", "[builtin]") {
-  const std::string spec =
-      GENERATE("cow@0", "cow@1", "cow@2", "cow@3", "sphere@0", "sphere@1", "sphere@5", "sphere:1e-9@3", "box", "box@3",
-               "box:3,2,1e-2@1", "ellipsoid:3,2,1@0", "ellipsoid:1,2,30@4", "tetrahedron", "tetrahedron:7@4");
+  const std::string spec = GENERATE("cow@0", "cow@1", "cow@2", "cow@3", "sphere@0", "sphere@1", "sphere@5",
+                                    "sphere:1e-9@3", "box", "box@3", "box:3,2,1e-2@1", "ellipsoid:3,2,1@0",
+                                    "ellipsoid:1,2,30@4", "tetrahedron", "tetrahedron:7@4", "asteroid@0", "asteroid@5",
+                                    "asteroid:0@4", "asteroid:4294967295@4", "binary@0", "binary@5", "binary:17@4");
   INFO(spec);
   require_sphere_like(builtin_mesh(spec));
+}
+
+TEST_CASE("asteroids and contact binaries of many seeds do not intersect themselves", "[builtin][asteroid]") {
+  for (const char* name : {"asteroid", "binary"})
+    for (int seed = 0; seed < 12; ++seed) {
+      const RawMesh mesh = builtin_mesh(fmt::format("{}:{}@{}", name, seed, seed == 0 ? 5 : 4));
+      INFO(mesh.name);
+      const SelfIntersections found =
+          self_intersections(mesh.vertices, mesh.faces, Bvh(mesh.vertices, mesh.faces), silent_monitor());
+      CHECK(found.pairs.empty());
+      CHECK(volume(mesh) > 1);
+      double near = HUGE_VAL, far = 0;
+      for (const Vec3& v : mesh.vertices) near = std::min(near, v.norm()), far = std::max(far, v.norm());
+      // The origin is well inside; the neck of a binary is its nearest part.
+      CHECK((near > 0.2 && far < 2.5));
+    }
+}
+
+TEST_CASE("a finer asteroid only adds vertices, and another seed is another body", "[builtin][asteroid]") {
+  for (const char* name : {"asteroid", "binary"}) {
+    const auto body = [&](const std::string& more) { return builtin_mesh(name + more); };
+    const RawMesh coarse = body(":5@3"), fine = body(":5@4"), other = body(":6@3");
+    double moved = 0, differs = 0;
+    for (std::size_t v = 0; v < coarse.vertices.size(); ++v) {
+      moved = std::max(moved, (coarse.vertices[v] - fine.vertices[v]).norm());
+      differs = std::max(differs, (coarse.vertices[v] - other.vertices[v]).norm());
+    }
+    CHECK(moved < 1e-14); // a sphere's vertices are brought to it at every level
+    CHECK(differs > 0.02);
+  }
+}
+
+TEST_CASE("asteroids have the same bits everywhere", "[builtin][asteroid]") {
+  const auto hash = [](const std::string& spec) {
+    const RawMesh mesh = builtin_mesh(spec);
+    std::string bytes;
+    for (const Vec3& v : mesh.vertices) bytes.append(reinterpret_cast<const char*>(v.data()), 3 * sizeof(double));
+    return sha256_hex(bytes);
+  };
+  CHECK(hash("asteroid:7@3") == "f289e7909aaa2df4f2f019f5c56a76eb13e434b9f497e11821697ce91b69db7d");
+  CHECK(hash("binary:7@3") == "c09201c142d6aa89cda66eb16481b06e4058d5b117dd12c953dce7cc38283007");
 }
 
 TEST_CASE("the cow is the mirror image of herself", "[builtin]") {
@@ -225,7 +270,9 @@ TEST_CASE("the name is canonical: it shows the sizes and the level used", "[buil
                Pair{"sphere", "sphere:1@4"}, Pair{"sphere@0", "sphere:1@0"}, Pair{"sphere:+1@0", "sphere:1@0"},
                Pair{"sphere:0.50@2", "sphere:0.5@2"}, Pair{"sphere:1e3@0", "sphere:1000@0"}, Pair{"box", "box:1,1,1@0"},
                Pair{"box:1,2.0,3", "box:1,2,3@0"}, Pair{"ellipsoid:3,2,1", "ellipsoid:3,2,1@4"},
-               Pair{"tetrahedron", "tetrahedron:1@0"}, Pair{"tetrahedron:0.1@2", "tetrahedron:0.1@2"});
+               Pair{"tetrahedron", "tetrahedron:1@0"}, Pair{"asteroid@2", "asteroid:1@2"},
+               Pair{"asteroid:007@0", "asteroid:7@0"}, Pair{"binary:4294967295@1", "binary:4294967295@1"},
+               Pair{"tetrahedron:0.1@2", "tetrahedron:0.1@2"});
   const RawMesh mesh = builtin_mesh(spec);
   CHECK(mesh.name == "builtin:" + name);
   CHECK(mesh.sha256.empty());
@@ -242,13 +289,14 @@ TEST_CASE("a bad name, level or size is refused, with the reason", "[builtin]") 
       "sphere:nan", "sphere:inf", "sphere:1e31", "sphere:1e-31", "sphere:1e999", "sphere:1,2", "sphere:1x", "sphere: 1",
       "sphere:1 @4", "sphere:1@4junk", "sphere@4:1", "box:1", "box:1,2", "box:1,2,3,4", "box:1,,2", "box:1,2,",
       "box:,1,2", "box:1,2,0", "box:1,2,nan", "box:1,1,1e7", "box@12", "ellipsoid", "ellipsoid@4", "ellipsoid:1,1",
-      "ellipsoid:1,1,1@10", "tetrahedron:1,2", "tetrahedron@13", "sphere:0x1");
+      "ellipsoid:1,1,1@10", "tetrahedron:1,2", "tetrahedron@13", "sphere:0x1", "asteroid:", "asteroid:-1",
+      "asteroid:1.5", "asteroid:4294967296", "asteroid:1,2", "asteroid@10", "binary:moon", "binary@10");
   INFO(spec);
   CHECK(fault_of(spec) == Fault::bad_argument);
 }
 
 TEST_CASE("help knows every body, and no allowed level exceeds the face limit", "[builtin]") {
-  REQUIRE(builtin_bodies().size() == 5);
+  REQUIRE(builtin_bodies().size() == 7);
   for (const BuiltinBody& body : builtin_bodies()) {
     INFO(body.name);
     CHECK(body.usage.rfind(body.name, 0) == 0);

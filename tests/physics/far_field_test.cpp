@@ -1,5 +1,5 @@
+#include "host/physics/body_field.hpp"
 #include "host/physics/far_field.hpp"
-#include "host/physics/polyhedron.hpp"
 #include "tests/support/compare_potential.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/run_program.hpp"
@@ -65,7 +65,7 @@ struct Measured {
 
 Measured measured(const Body& body, const Vec3& low, const Vec3& high, const Vec3& at) {
   Monitor silent;
-  const physics::ExactField found = physics::exact_field(body, std::span(&at, 1), Derivatives::second, 1, silent);
+  const physics::BodyFieldValues found = physics::exact_field(body, std::span(&at, 1), Derivatives::second, 1, silent);
   const WideField truth = box_field(low, high, at);
   Measured m;
   m.stated = found.error;

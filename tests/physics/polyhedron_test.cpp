@@ -1,5 +1,6 @@
 #include "host/error.hpp"
 #include "host/mass/mass_moments.hpp"
+#include "host/physics/body_field.hpp"
 #include "host/physics/polyhedron.hpp"
 #include "host/physics/potential.hpp"
 #include "host/reference/potential.hpp"
@@ -174,7 +175,7 @@ TEST_CASE("a body's parts add with their densities", "[polyhedron]") {
   const Body body = body_of(outer, 3, {Part(ClosedSurface::from(inner), -1)});
   const std::vector<Vec3> points = {{1.2, 1.3, 1.4}, {0.2, 0.3, 0.4}, {3, 3, 3}};
   Monitor silent;
-  const physics::ExactField field = physics::exact_field(body, points, Derivatives::second, 0, silent);
+  const physics::BodyFieldValues field = physics::exact_field(body, points, Derivatives::second, 0, silent);
   const std::vector<double> densities = {2, 3, 0};
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Real truth = 3 * polyhedron(outer).at(points[i]).value - polyhedron(inner).at(points[i]).value;
@@ -196,7 +197,7 @@ TEST_CASE("second derivatives on an edge are refused, value and gradient are not
     CHECK(error.fault() == Fault::point_singular);
     CHECK_THAT(error.what(), Catch::Contains("the point (1, 1, 0.3)"));
   }
-  const physics::ExactField field = physics::exact_field(cube, points, Derivatives::first, 1, silent);
+  const physics::BodyFieldValues field = physics::exact_field(cube, points, Derivatives::first, 1, silent);
   CHECK(field.field.hessian.empty());
   CHECK(field.field.gradient[1].x() < -1);
   struct Impatient final : Monitor {

@@ -1,7 +1,7 @@
 #include "host/backend.hpp"
 #include "host/io/mesh_source.hpp"
 #include "host/mass/mass_moments.hpp"
-#include "host/physics/polyhedron.hpp"
+#include "host/physics/body_field.hpp"
 #include "host/physics/potential.hpp"
 #include "host/physics/potential_terms.hpp"
 #include "tests/support/compare_potential.hpp"

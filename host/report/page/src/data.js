@@ -32,5 +32,9 @@ export function read(text) {
     data.mesh.vertices = new Float32Array(bytes(data.mesh.vertices).buffer);
     data.mesh.faces = new Uint32Array(bytes(data.mesh.faces).buffer);
   }
+  if (data.values) {
+    data.values.places = new Float32Array(bytes(data.values.places).buffer);
+    for (const column of data.values.columns) column.values = new Float32Array(bytes(column.values).buffer);
+  }
   return data;
 }

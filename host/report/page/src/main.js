@@ -1,6 +1,5 @@
 // The page: one state, drawn anew when it changes.
-import { SoftwareBody } from "./body_software.js";
-import { WebglBody } from "./body_webgl.js";
+import { bodyCanvas, fit } from "./body_canvas.js";
 import { Scale } from "./colour.js";
 import { read } from "./data.js";
 import { $, announce, el, options } from "./dom.js";
@@ -11,22 +10,23 @@ import { Model, fieldNames, frameOf, normals } from "./model.js";
 import { numbers, showOrder, showSource } from "./numbers.js";
 import { OrderSlider } from "./order.js";
 import { angles, unit } from "./sphere.js";
-import { View } from "./view.js";
+import { showValues } from "./values.js";
 
 const markStep = Math.PI / 36;
 
 const state = { surface: null, shape: "xyz", component: "f_r", order: 0, mark: null };
-let data, model, body, view, map, slider;
+let data, model, body, view, map, slider, onMesh;
 
 function start() {
   data = read($("data").textContent);
   heading();
   theme();
+  if (data.values) onMesh = showValues(data);
   if (data.surfaces.length > 0) bodies();
-  else if (data.mesh?.vertices.length > 0) meshAlone();
+  else if (data.mesh?.vertices.length > 0 && !data.values) meshAlone();
   else {
     $("controls").hidden = true;
-    document.querySelector(".stage").hidden = true;
+    $("stage").hidden = true;
   }
   numbers(data);
 }
@@ -57,12 +57,16 @@ function theme() {
     else document.documentElement.dataset.theme = choices[at];
     $("theme").textContent = `Theme: ${choices[at]}`;
     redraw();
+    onMesh?.theme();
   };
   $("theme").addEventListener("click", () => {
     at = (at + 1) % choices.length;
     show();
   });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => redraw());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    redraw();
+    onMesh?.theme();
+  });
   show();
 }
 
@@ -252,40 +256,16 @@ function chooseSurface(name) {
   slider.set(state.order);
 }
 
-/// The body's canvas: by WebGL, or by hand where there is none.
 function openBody(hover) {
-  let canvas = el("canvas", {
-    tabindex: "0",
-    role: "img",
-    "aria-label": "The body in three dimensions. Arrow keys turn it, plus and minus zoom, Home resets.",
-  });
-  try {
-    body = new WebglBody(canvas);
-    $("body").dataset.by = "webgl";
-  } catch {
-    canvas = canvas.cloneNode();
-    body = new SoftwareBody(canvas);
-    $("body").dataset.by = "software";
-    $("body-panel").append(
-      el("p", { class: "quiet" }, "WebGL is not available, so the body is drawn without it, more slowly."),
-    );
-  }
-  $("body").append(canvas);
-  view = new View(canvas, () => redraw("view"), hover);
-  canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
-  fit($("body"), (width, height, ratio) => {
-    body.resize(width, height, ratio);
-    redraw("view");
-  });
-}
-
-function fit(element, resize) {
-  const now = () => {
-    const { clientWidth, clientHeight } = element;
-    if (clientWidth > 0 && clientHeight > 0) resize(clientWidth, clientHeight, Math.min(devicePixelRatio || 1, 2));
-  };
-  now();
-  new ResizeObserver(now).observe(element);
+  const opened = bodyCanvas(
+    $("body"),
+    $("body-panel"),
+    "The body in three dimensions. Arrow keys turn it, plus and minus zoom, Home resets.",
+    () => redraw("view"),
+    hover,
+  );
+  ({ body, view } = opened);
+  redraw("view");
 }
 
 function openMap() {

@@ -77,6 +77,26 @@ before(async () => {
   run("expand", "builtin:box:1,2,3", "--lmax", "6", "-q", "-o", file("box.json"));
   run("report", file("box.json"), "-q", "-o", file("box.html"));
   run("report", file("box.json"), "--mesh", "builtin:box:1,2,3", "-q", "-o", file("box-mesh.html"));
+  const faces = json("cow.json").mesh.faces;
+  const names = ["id", "x", "y", "z", "g_x", "g_y", "g_z", "slope"];
+  const rows = Array.from({ length: faces }, (_, i) => [i, 0.5, 0, 0, 0, -2, 0, i / 100].join(","));
+  writeFileSync(file("values.csv"), [names.join(","), ...rows, ""].join("\n"));
+  writeFileSync(
+    file("values.csv.json"),
+    JSON.stringify({
+      schema: "cowgpu.values.v1",
+      body: hostile,
+      place: "faces",
+      rows: faces,
+      columns: names.map((name) => ({ name, unit: name === "slope" ? "deg" : "m", meaning: hostile })),
+      notes: [hostile],
+    }),
+  );
+  const valuesOf = (result, page) =>
+    run("report", file(result), "--mesh", "builtin:cow@1", "--values", file("values.csv"), "-q", "-o", file(page));
+  valuesOf("cow.json", "values.html");
+  run("expand", "builtin:cow@1", "--lmax", "6", "-q", "-o", file("mass.json"));
+  valuesOf("mass.json", "values-alone.html");
   browser = await launch();
 });
 
@@ -95,6 +115,36 @@ test("it opens without a word on the console and without a request", async () =>
   );
   assert.equal(await page.$eval("#body", (body) => body.dataset.by), "webgl");
   await page.close();
+});
+
+test("values on the mesh are shown in colours, with the numbers of the place that is named or pointed at", async () => {
+  for (const name of ["values.html", "values-alone.html"]) {
+    const page = await open(name, { height: 1800 });
+    assert.equal(await page.$eval("#stage", (stage) => stage.hidden), name === "values-alone.html");
+    assert.match(await words(page, "#values-bar"), /slope \(\u00b0\)/);
+    await page.$eval("#values-number", (box) => {
+      box.value = 1234;
+      box.dispatchEvent(new Event("change"));
+    });
+    const said = await words(page, "#values-readout");
+    assert.match(said, /slope12.340\u00b0/);
+    assert.match(said, /g \(x, y, z\)\(0, \u22122, 0\) m/);
+    assert.match(said, /place\(0.50000, 0, 0\) m/);
+    const before = await picture(page, "#values-body");
+    await choose(page, "#quantity", "0");
+    assert.match(await words(page, "#values-bar"), /size of g \(m\)2/);
+    assert.notEqual(await picture(page, "#values-body"), before);
+    const box = await (await page.$("#values-body canvas")).boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await settled(page);
+    assert.match(await page.$eval("#values-readout", (readout) => readout.dataset.place), /^\d+$/);
+    await page.mouse.move(box.x + 3, box.y + 3);
+    await settled(page);
+    assert.match(await words(page, "#values-readout"), /Point at the body/);
+    assert.deepEqual(page.said, []);
+    assert.equal(await page.evaluate(() => window.broken), undefined);
+    await page.close();
+  }
 });
 
 test("its policy forbids what it does not need", async () => {

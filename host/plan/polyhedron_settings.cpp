@@ -1,0 +1,31 @@
+#include "host/plan/polyhedron_settings.hpp"
+
+#include <algorithm>
+
+#include <cmath>
+
+namespace cowgpu::plan {
+
+FastSettings fast_settings(const PolyhedronProblem& problem) {
+  const double digits = -std::log10(problem.tolerance);
+  FastSettings settings{};
+  // Pairs' errors cancel: with these orders and shares the largest error is below half the tolerance at each of the 88,320
+  // centroids of a cow (bench/polyhedron_fast.md). Bounds do not cancel, and their shares are where a search begins.
+  const double first = problem.guarantee ? 15 : 10;
+  settings.order = std::clamp(int(std::lround(first + (digits - 6) * 5 / 3)), 4, largest_fast_order);
+  settings.tau = problem.tolerance * (problem.guarantee ? 1. / 170 : 0.4 * std::pow(10, (digits - 6) / 15));
+  settings.near = digits > 9.5 ? NearDigits::full : digits > 6.01 ? NearDigits::nine : NearDigits::single;
+  if (problem.derivatives == Derivatives::second && settings.near == NearDigits::single)
+    settings.near = NearDigits::nine;
+  return settings;
+}
+
+bool fast_sum_pays(const PolyhedronProblem& problem, std::uint64_t points) {
+  if (problem.tolerance == 0) return false;
+  // In the time of one face at one point in the direct sum.
+  const double digits = -std::log10(problem.tolerance), faces = double(problem.faces.size());
+  const double a_face = 600, a_point = std::max(500.0, 800 + 430 * (digits - 6));
+  return faces * double(points) > 1.2 * (a_face * faces + a_point * double(points));
+}
+
+} // namespace cowgpu::plan
