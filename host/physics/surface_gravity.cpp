@@ -9,10 +9,6 @@
 namespace cowgpu::physics {
 namespace {
 
-double angle(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).stableNorm(), a.dot(b));
-}
-
 double mean(const std::vector<double>& values, const std::vector<double>& weights) {
   long double sum = 0, weight = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -63,9 +59,9 @@ SurfaceGravity surface_gravity(const SurfacePlaces& places, const PotentialField
   found.elevation.resize(count);
   found.tilt.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    found.slope[i] = angle(-found.gravity[i], places.normals[i]);
+    found.slope[i] = angle_between(-found.gravity[i], places.normals[i]);
     found.elevation[i] = (found.geopotential[i] - found.mean_geopotential) / found.gravity[i].stableNorm();
-    found.tilt[i] = angle(places.normals[i], places.at[i] - centre_of_mass);
+    found.tilt[i] = angle_between(places.normals[i], places.at[i] - centre_of_mass);
   }
   return found;
 }

@@ -14,11 +14,11 @@ Vec3 direction(const Vec3& v) {
   return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
 }
 
-double angle(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 } // namespace
+
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).stableNorm(), a.dot(b));
+}
 
 SurfacePlaces face_places(const ClosedSurface& surface, double height) {
   SurfacePlaces found;
@@ -50,7 +50,7 @@ SurfacePlaces vertex_places(const ClosedSurface& surface, double height) {
     const double third = area.stableNorm() / 6;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 &here = *x[k], &next = *x[(k + 1) % 3], &last = *x[(k + 2) % 3];
-      found.normals[face[k]] += angle(next - here, last - here) * normal;
+      found.normals[face[k]] += angle_between(next - here, last - here) * normal;
       found.areas[face[k]] += third;
     }
   }

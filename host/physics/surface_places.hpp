@@ -18,6 +18,9 @@ struct SurfacePlaces {
   std::vector<double> areas; ///< of faces; of vertices a third of the faces that meet there; empty at points
 };
 
+/// From 0 to pi; 0 where one of the vectors is 0.
+double angle_between(const Vec3& a, const Vec3& b);
+
 /// Centroids of faces, `height` along the faces' normals.
 SurfacePlaces face_places(const ClosedSurface& surface, double height);
 
