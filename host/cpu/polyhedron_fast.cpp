@@ -80,7 +80,7 @@ void check(const PolyhedronProblem& problem) {
 }
 
 // The field of a point mass.
-void set_far(const Body& body, const Vec3& from, std::size_t i, PolyhedronValues& values) {
+void set_farthest(const Body& body, const Vec3& from, std::size_t i, PolyhedronValues& values) {
   const double distance = from.stableNorm(), volume = body.sources.volume();
   const Vec3 direction = from / distance;
   const double value = volume / distance, slope = value / distance, curve = slope / distance;
@@ -108,6 +108,8 @@ private:
   void find_pairs(const Call& call, std::uint32_t task, Worker& worker) const;
   void sum_task(const Call& call, std::uint32_t task, Worker& worker, PolyhedronValues& values) const;
   void sum_leaf(const Call& call, std::uint32_t leaf, Worker& worker, PolyhedronValues& values) const;
+  void sum_far(const Body& body, std::span<const Vec3> points, std::span<const std::uint32_t> far, Monitor& monitor,
+               PolyhedronValues& values) const;
   bool second() const { return problem_.derivatives == Derivatives::second; }
 
   PolyhedronProblem problem_;
@@ -167,14 +169,20 @@ PolyhedronValues FastPolyhedron::at(std::span<const Vec3> points, Monitor& monit
 
   const std::size_t count = points.size();
   PolyhedronValues values = plan::polyhedron_values(problem_, count);
-  std::vector<std::uint32_t> near;
+  const double volume = std::abs(body->sources.volume()), radius = std::cbrt(0.75 * std::numbers::inv_pi * volume);
+  const double weight = volume > 0 ? volume / (radius * radius) : 0;
+  const plan::PairTolerance tolerance{settings.tau * weight, radius, plan::largest_tree_leaf};
+  const double far_distance = plan::far_distance(body->sources, tolerance);
+
+  std::vector<std::uint32_t> near, far;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 from = points[i] / body->unit - origin;
-    if (from.cwiseAbs().maxCoeff() < farthest)
-      near.push_back(std::uint32_t(i));
+    if (from.cwiseAbs().maxCoeff() >= farthest)
+      set_farthest(*body, from, i, values);
     else
-      set_far(*body, from, i, values);
+      (from.norm() < far_distance ? near : far).push_back(std::uint32_t(i));
   }
+  sum_far(*body, points, far, monitor, values);
   double setup = seconds_since(start), near_faces = 0;
   if (!near.empty()) {
     plan::PlaceTree targets(
@@ -187,15 +195,13 @@ PolyhedronValues FastPolyhedron::at(std::span<const Vec3> points, Monitor& monit
     }
     near = {};
     setup = seconds_since(start);
-    const double volume = std::abs(body->sources.volume()), radius = std::cbrt(0.75 * std::numbers::inv_pi * volume);
-    const double weight = volume > 0 ? volume / (radius * radius) : 0;
     const Call call{*body,
                     targets,
                     sorted,
                     targets.order,
                     settings.near == plan::NearDigits::full ? SumDigits::full : SumDigits::nine,
                     settings.near == plan::NearDigits::single,
-                    {settings.tau * weight, radius, plan::largest_tree_leaf},
+                    tolerance,
                     problem_.tolerance * weight};
     const std::vector<std::uint32_t> tasks = plan::point_tasks(targets, plan::task_points);
     std::vector<std::unique_ptr<Worker>> workers(threads_);
@@ -277,6 +283,28 @@ void FastPolyhedron::sum_leaf(const Call& call, std::uint32_t leaf, Worker& work
     plan::store_sums(problem_, call.body.unit, sums + i, count, to, values);
     if (problem_.guarantee) values.bound[to] = call.body.unit * bound;
   }
+}
+
+// Of all faces together.
+void FastPolyhedron::sum_far(const Body& body, std::span<const Vec3> points, std::span<const std::uint32_t> far,
+                             Monitor& monitor, PolyhedronValues& values) const {
+  constexpr std::size_t block = 64;
+  parallel_for(threads_, (far.size() + block - 1) / block, [&](std::size_t task, unsigned) {
+    const FlushDenormals flush;
+    check_stop(monitor);
+    const auto own = far.subspan(task * block, std::min(block, far.size() - task * block));
+    alignas(64) double places[3 * block], sums[Rows::second * block] = {};
+    for (std::size_t i = 0; i < block; ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        places[k * block + i] = points[own[std::min(i, own.size() - 1)]][Eigen::Index(k)] / body.unit;
+    FarField field(body.sources, body.translations);
+    field.add_multipoles(0, places, block, second(), sums);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      plan::store_sums(problem_, body.unit, sums + i, block, own[i], values);
+      const double distance = (points[own[i]] / body.unit - body.sources.origin()).norm();
+      if (problem_.guarantee) values.bound[own[i]] = body.unit * plan::multipole_bound(body.sources, 0, distance);
+    }
+  });
 }
 
 class FasterPolyhedron final : public PreparedPolyhedron {

@@ -85,11 +85,9 @@ void MeshValuesFile::write(const MeshValues& values, const std::string& colour, 
   case MeshValuesFormat::netcdf: mesh_values_file::write_netcdf(job); break;
   case MeshValuesFormat::csv: mesh_values_file::write_table(job); break;
   }
-  if (beside_) {
-    mesh_values_file::write_about(values, path_.filename().string(), *beside_);
-    beside_->commit();
-  }
+  if (beside_) mesh_values_file::write_about(values, path_.filename().string(), *beside_);
   file_.commit();
+  if (beside_) beside_->commit();
 }
 
 void write_mesh_values(const fs::path& path, const MeshValues& values, const std::string& colour,

@@ -41,7 +41,7 @@ public:
 
   MeshValuesFormat format() const { return format_; }
 
-  /// Writes and commits, once; of two files the JSON first. `colour`: the column to colour by, for shown_column(). Throws what
+  /// Writes and commits, once; of two files the table first. `colour`: the column to colour by, for shown_column(). Throws what
   /// check(values) and shown_column() throw, Error(bad_argument) for points without faces as GLB, too_large beyond a format's
   /// indices, mesh_range for what GLB's floats cannot hold, cannot_write, interrupted.
   void write(const MeshValues& values, const std::string& colour = "", const Monitor& monitor = silent_monitor());

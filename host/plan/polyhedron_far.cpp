@@ -128,32 +128,40 @@ void FarField::add(int order, const double* points, std::size_t count, const dou
   }
 }
 
+void FarField::see_from(const Vec3& centre, const double* points, std::size_t count) {
+  seen_.resize((4 * count + 7) / 8);
+  double* seen = seen_.front().values;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < count; ++i) seen[k * count + i] = points[k * count + i] - centre[Eigen::Index(k)];
+}
+
 void FarField::add_leaf(const PlaceTree& targets, const TaskPairs& pairs, std::uint32_t leaf, const double* points,
                         std::size_t count, bool second, double* sums) {
   const int order = sources_->order();
   const std::size_t sets = second ? 10 : 5;
   derived_.resize(sets * harmonics(order + 1));
-  seen_.resize((4 * count + 7) / 8);
-  double* seen = seen_.front().values;
-  const auto see_from = [&](const Vec3& centre) {
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t i = 0; i < count; ++i) seen[k * count + i] = points[k * count + i] - centre[Eigen::Index(k)];
-  };
   derive_locals(order, local(leaf), sets, derived_.data());
-  see_from(targets.cells[leaf].centre);
+  see_from(targets.cells[leaf].centre, points, count);
   add(order, points, count, derived_.data(), nullptr, second, sums);
-  for (const CellPair& pair : TaskPairs::of_leaf(pairs.at_points, leaf)) {
-    derive_multipoles(order, sources_->multipoles(pair.source), sets, derived_.data());
-    see_from(sources_->cells()[pair.source].centre);
-    // R(x)/|x|^(2l+1) is R(x/|x|^2)/|x|.
-    double* inverse = seen + 3 * count;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double x = seen[i], y = seen[count + i], z = seen[2 * count + i], square = x * x + y * y + z * z;
-      inverse[i] = 1 / std::sqrt(square);
-      for (std::size_t k = 0; k < 3; ++k) seen[k * count + i] /= square;
-    }
-    add(order + 1, points, count, derived_.data(), inverse, second, sums);
+  for (const CellPair& pair : TaskPairs::of_leaf(pairs.at_points, leaf))
+    add_multipoles(pair.source, points, count, second, sums);
+}
+
+void FarField::add_multipoles(std::uint32_t source, const double* points, std::size_t count, bool second,
+                              double* sums) {
+  const int order = sources_->order();
+  const std::size_t sets = second ? 10 : 5;
+  derived_.resize(sets * harmonics(order + 1));
+  derive_multipoles(order, sources_->multipoles(source), sets, derived_.data());
+  see_from(sources_->cells()[source].centre, points, count);
+  // R(x)/|x|^(2l+1) is R(x/|x|^2)/|x|.
+  double *seen = seen_.front().values, *inverse = seen + 3 * count;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = seen[i], y = seen[count + i], z = seen[2 * count + i], square = x * x + y * y + z * z;
+    inverse[i] = 1 / std::sqrt(square);
+    for (std::size_t k = 0; k < 3; ++k) seen[k * count + i] /= square;
   }
+  add(order + 1, points, count, derived_.data(), inverse, second, sums);
 }
 
 std::uint64_t FarField::bytes(std::uint64_t points, std::uint32_t largest_leaf, int order) {

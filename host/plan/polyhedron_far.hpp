@@ -28,11 +28,15 @@ public:
   void add_leaf(const PlaceTree& targets, const TaskPairs& pairs, std::uint32_t leaf, const double* points,
                 std::size_t count, bool second, double* sums);
 
+  /// The same of one cell's multipoles, at points outside its ball.
+  void add_multipoles(std::uint32_t source, const double* points, std::size_t count, bool second, double* sums);
+
   /// Upper bound of the bytes that a task of so many points takes.
   static std::uint64_t bytes(std::uint64_t points, std::uint32_t largest_leaf, int order);
 
 private:
   double* local(std::uint32_t cell) { return &locals_[(cell - first_) * densities * harmonics(sources_->order())]; }
+  void see_from(const Vec3& centre, const double* points, std::size_t count);
   void add(int order, const double* points, std::size_t count, const double* expanded, const double* factors,
            bool second, double* sums);
 

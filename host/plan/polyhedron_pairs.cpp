@@ -33,17 +33,23 @@ double share(const PolyhedronSources& sources, const TreeCell& target, const Pai
   return tolerance.tau * outside * outside / std::sqrt(std::sqrt(larger));
 }
 
-// What multipoles lose at the points of a leaf; none where that is too much.
-std::optional<double> at_points(const PolyhedronSources& sources, std::uint32_t source, const TreeCell& target,
-                                const PairTolerance& tolerance, double nearest) {
-  const TreeCell& from = sources.cells()[source];
-  if (!(nearest > 1.2 * from.radius) || nearest < least_shift) return {};
-  const double x = 1 / nearest;
-  const double bound = sources.reach(source) * std::pow(x, sources.order() + 2) / (1 - from.radius * x);
-  return bound <= share(sources, target, tolerance) ? std::optional(bound) : std::nullopt;
+} // namespace
+
+double multipole_bound(const PolyhedronSources& sources, std::uint32_t source, double distance) {
+  const double radius = sources.cells()[source].radius, x = 1 / distance;
+  if (!(distance > radius) || distance < least_shift) return std::numeric_limits<double>::infinity();
+  return sources.reach(source) * std::pow(x, sources.order() + 2) / (1 - radius * x);
 }
 
-} // namespace
+double far_distance(const PolyhedronSources& sources, const PairTolerance& tolerance) {
+  double distance = std::max(2 * sources.cells()[0].radius, tolerance.reach);
+  const auto kept = [&] {
+    const double outside = tolerance.reach / distance;
+    return multipole_bound(sources, 0, distance) <= tolerance.tau * outside * outside;
+  };
+  for (int step = 0; step < 100 && !kept(); ++step) distance *= 1.125;
+  return distance;
+}
 
 std::optional<FarPair> far_pair(const PolyhedronSources& sources, std::uint32_t source, const TreeCell& target,
                                 const PairTolerance& tolerance) {
@@ -126,10 +132,10 @@ void find_pairs(const PolyhedronSources& sources, const PlaceTree& targets, std:
       double nearest2 = std::numeric_limits<double>::infinity();
       for (const Vec3& point : points.subspan(target.begin, target.count()))
         nearest2 = std::min(nearest2, (point - source.centre).squaredNorm());
-      const double nearest = std::sqrt(nearest2);
-      if (const auto lost = at_points(sources, pair.source, target, tolerance, nearest)) {
+      const double lost = multipole_bound(sources, pair.source, std::sqrt(nearest2));
+      if (lost <= share(sources, target, tolerance)) {
         found.at_points.push_back(pair);
-        bound += *lost;
+        bound += lost;
         continue;
       }
     }

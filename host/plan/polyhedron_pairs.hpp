@@ -33,6 +33,12 @@ struct FarPair {
 std::optional<FarPair> far_pair(const PolyhedronSources& sources, std::uint32_t source, const TreeCell& target,
                                 const PairTolerance& tolerance);
 
+/// A bound of what a cell's multipoles lose of A at so large a distance from its centre; infinite within its ball.
+double multipole_bound(const PolyhedronSources& sources, std::uint32_t source, double distance);
+
+/// From here on the multipoles of all faces together keep the tolerance, and lose no digits as closed forms do far away.
+double far_distance(const PolyhedronSources& sources, const PairTolerance& tolerance);
+
 /// A share of the field at a task's points. Cells are indices of the trees.
 struct CellPair {
   std::uint32_t source, target;

@@ -32,16 +32,24 @@ public:
   }
 
   void all() {
-    for (std::uint32_t face = 0; face < patch_.faces.size(); ++face)
-      if (!taken_[face]) strip(face);
+    // Those with few neighbours first: later they would be strips of their own.
+    for (int most = 0; most <= 3; ++most)
+      for (std::uint32_t face = 0; face < patch_.faces.size(); ++face)
+        if (!taken_[face] && neighbours(face) <= most) strip(face);
   }
 
 private:
   // A face not taken yet at edge k of `face`, as 3 face + its edge; `none` where there is none.
   std::uint32_t neighbour(std::uint32_t face, std::size_t k) const {
     for (std::uint32_t side = last_[patch_.faces[face].edges[k]]; side != none; side = before_[side])
-      if (!taken_[side / 3]) return side;
+      if (!taken_[side / 3] && side / 3 != face) return side;
     return none;
+  }
+
+  int neighbours(std::uint32_t face) const {
+    int count = 0;
+    for (std::size_t k = 0; k < 3; ++k) count += neighbour(face, k) != none ? 1 : 0;
+    return count;
   }
 
   // From the face on over its neighbours. The first edge PQ is one without a neighbour, if there is one.
@@ -62,8 +70,9 @@ private:
       const bool along = f.corners[k] == p; // then QN is edge `next`, NP edge `third`
       const std::size_t qn = along ? next : third, np = along ? third : next;
       std::uint32_t side = neighbour(face, qn);
-      const bool keep_p = side == none;
-      if (keep_p) side = neighbour(face, np);
+      const std::uint32_t other = neighbour(face, np);
+      const bool keep_p = side == none || (other != none && neighbours(other / 3) < neighbours(side / 3));
+      if (keep_p) side = other;
       step(f, k, qn, np, n, keep_p);
       if (side == none) return;
       if (!keep_p) p = q;

@@ -103,6 +103,11 @@ TEST_CASE("a full disk is exit code 5 for every kind of file, and the old file s
       {"b.nc", {"distance", "builtin:box", "--grid", "12"}},
       {"c.glb", {"inflate", "builtin:box", "--levels", "0.3", "--cells", "24"}},
       {"d.csv", {"streamlines", "builtin:sphere@3", "--plane", "xy", "--count", "200"}},
+      {"a.vtp", {"surface", "builtin:sphere@2"}},
+      {"b.ply", {"surface", "builtin:sphere@2"}},
+      {"d.glb", {"surface", "builtin:sphere@2", "--at", "vertices"}},
+      {"e.csv", {"surface", "builtin:sphere@2"}},
+      {"c.nc", {"surface", "builtin:sphere@2"}},
   };
   for (const auto& [name, command] : commands) {
     const std::string path = folder / name;
@@ -130,5 +135,5 @@ TEST_CASE("a full disk is exit code 5 for every kind of file, and the old file s
     INFO(entry.path());
     ++files;
   }
-  CHECK(files == commands.size() + 1);
+  CHECK(files == commands.size() + 2); // the moments, and the JSON beside the values
 }

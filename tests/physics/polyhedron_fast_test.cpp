@@ -130,7 +130,7 @@ TEST_CASE("the fast sum is right inside, far away, on vertices, and where points
   for (int i = 0; i < 500; ++i) scattered.emplace_back(normal(random), normal(random), normal(random));
   for (int i = 0; i < 500; ++i) along.emplace_back(0.001 * i, 0.2, 0.1);
   std::vector<Vec3> distant;
-  for (const double d : {3.0, 30.0, 1e3, 1e6, 1e12}) distant.emplace_back(0.6 * d, 0.64 * d, 0.48 * d);
+  for (const double d : {3.0, 30.0, 1e3, 1e6, 1e12, 1e40}) distant.emplace_back(0.6 * d, 0.64 * d, 0.48 * d);
   for (const std::vector<Vec3>& points :
        {mesh.vertices, scattered, along, distant, std::vector<Vec3>(1000, Vec3(0.1, 0.1, 0.1)),
         std::vector<Vec3>(1, Vec3(0, 0, 0))}) {
