@@ -12,7 +12,7 @@ namespace {
 
 using Real = long double;
 
-constexpr std::size_t points_per_task = 4;
+constexpr std::size_t extended_points_per_task = 4;
 
 class ExtendedForms final : public ClosedForms {
 public:
@@ -41,15 +41,16 @@ public:
     const std::vector<Piece>& all = pieces();
     std::vector<Polyhedron::Scratch> scratch(threads_);
     std::atomic<std::size_t> done = 0;
-    parallel_for(threads_, (count + points_per_task - 1) / points_per_task, [&](std::size_t task, unsigned thread) {
-      const std::size_t end = std::min(count, (task + 1) * points_per_task);
-      for (std::size_t k = task * points_per_task; k < end; ++k) {
-        check_stop(monitor);
-        put(which[k], sum_at(all, points[which[k]], scratch[thread]), 0, thread);
-        const std::size_t now = ++done;
-        if (thread == 0) monitor.progress("exact potential", double(now) / double(count));
-      }
-    });
+    parallel_for(threads_, (count + extended_points_per_task - 1) / points_per_task,
+                 [&](std::size_t task, unsigned thread) {
+                   const std::size_t end = std::min(count, (task + 1) * extended_points_per_task);
+                   for (std::size_t k = task * extended_points_per_task; k < end; ++k) {
+                     check_stop(monitor);
+                     put(which[k], sum_at(all, points[which[k]], scratch[thread]), 0, thread);
+                     const std::size_t now = ++done;
+                     if (thread == 0) monitor.progress("exact potential", double(now) / double(count));
+                   }
+                 });
   }
 
   MemoryNeed memory(std::uint64_t) const override {
