@@ -41,7 +41,7 @@ public:
     const std::vector<Piece>& all = pieces();
     std::vector<Polyhedron::Scratch> scratch(threads_);
     std::atomic<std::size_t> done = 0;
-    parallel_for(threads_, (count + extended_points_per_task - 1) / points_per_task,
+    parallel_for(threads_, (count + extended_points_per_task - 1) / extended_points_per_task,
                  [&](std::size_t task, unsigned thread) {
                    const std::size_t end = std::min(count, (task + 1) * extended_points_per_task);
                    for (std::size_t k = task * extended_points_per_task; k < end; ++k) {
