@@ -32,6 +32,9 @@ public:
   std::unique_ptr<ExteriorPotential> exterior_potential(const PotentialProblem& problem) const override {
     return cpu_->exterior_potential(problem);
   }
+  std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem) const override {
+    return cpu_->polyhedron(problem);
+  }
   Image render(const RenderScene& scene, Monitor& monitor) override { return cpu_->render(scene, monitor); }
   double measured_peak() override { return cpu_->measured_peak(); }
 
