@@ -6,7 +6,9 @@
 #include "host/physics/potential.hpp"
 #include "host/physics/zero_velocity.hpp"
 #include "host/report/result.hpp"
+#include "host/requests/fast_sum.hpp"
 #include "host/requests/memory.hpp"
+#include "host/requests/stated_mass.hpp"
 
 #include <fmt/format.h>
 
@@ -30,34 +32,10 @@ void check_request(const EquilibriaRequest& r) {
         fmt::format("{} holds multipoles, whose series is not the field near the body and inside it: take the mesh",
                     r.body.mesh));
   if (r.body.charge) refuse("equilibria are those of gravity: leave --charge out");
-  if (r.mass && r.body.density) refuse("--mass and --density both say how heavy the body is; leave one out");
-  if (r.mass && !r.body.parts.empty())
-    refuse("--mass says the mass of a body of one density, and --part adds others: give --density in its place");
-  if (r.mass && !(r.mass->value > 0)) refuse(fmt::format("--mass {}: it must be above 0", r.mass->value));
+  check_mass(r.body, r.mass);
   if (!(r.spin_rate.value > 0) || !std::isfinite(r.spin_rate.value))
     refuse(fmt::format("the spin {} must be above 0 and finite", r.spin_rate.value));
   if (r.spin_axis) check_direction(*r.spin_axis, "the axis of --spin");
-}
-
-// A number of a body with units has one, and of a body without has none.
-void check_unit(const char* option, const Measure& measure, bool stated, const char* example) {
-  if (measure.has_unit && !stated)
-    refuse(
-        fmt::format("{}: {} {} needs the mesh's unit of length: add --length-unit or --length, or give a bare number "
-                    "in the mesh's units with G = 1",
-                    option, measure.value, measure.unit));
-  if (!measure.has_unit && stated)
-    refuse(fmt::format("{} {}: it needs a unit, as in {}", option, measure.value, example));
-}
-
-void weigh(const Measure& mass, Body& body) {
-  check_unit("--mass", mass, body.placement.units.stated, "6.69e15kg");
-  const double density = mass.value / body.volume;
-  if (!(density >= 1e-50) || !(density <= 1e50))
-    refuse(
-        fmt::format("--mass {}: of a volume of {:.6g} that is a density of {:.3g}, out of the range from 1e-50 to 1e50",
-                    mass.value, body.volume, density));
-  body.density = density;
 }
 
 EquilibriaResult::ZeroVelocity zero_velocity(const ZeroVelocityRequest& r, const Body& body, const EquilibriaResult& s,
@@ -84,11 +62,11 @@ EquilibriaResult::ZeroVelocity zero_velocity(const ZeroVelocityRequest& r, const
 
 } // namespace
 
-EquilibriaResult equilibria(const EquilibriaRequest& request, Backend& backend, Monitor& monitor) {
+EquilibriaResult equilibria(const EquilibriaRequest& request, Backend& asked, Monitor& monitor) {
   check_request(request);
-  BodyRequest asked = request.body;
-  if (request.mass) asked.density = 1; // until the volume is known
-  LoadedMass loaded = load_mass(asked, Motion::free, monitor);
+  BodyRequest placed = request.body;
+  if (request.mass) placed.density = 1; // until the volume is known
+  LoadedMass loaded = load_mass(placed, Motion::free, monitor);
   Body& body = *loaded.mesh;
   if (request.mass) weigh(*request.mass, body);
   loaded.notes.insert(loaded.notes.end(), request.notes.begin(), request.notes.end());
@@ -109,6 +87,10 @@ EquilibriaResult equilibria(const EquilibriaRequest& request, Backend& backend, 
   problem.spin = s.spin;
   problem.smallest = request.smallest;
   problem.most_places = request.cells;
+  const auto cpu =
+      fast_sum_backend(body, problem.tolerance, Derivatives::second, request.cells, asked, request.threads);
+  const Backend& backend = cpu ? *cpu : asked;
+  if (cpu) s.subject.notes.push_back(fast_sum_note(asked));
   check_memory(equilibria_memory(body, problem, backend), backend, "allow fewer --cells");
   s.equilibria = equilibria(body, problem, backend, monitor);
   if (request.surface) s.zero_velocity = zero_velocity(*request.surface, body, s, backend, monitor);

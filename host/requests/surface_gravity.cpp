@@ -5,12 +5,15 @@
 #include "host/mesh/geometry.hpp"
 #include "host/physics/body_field.hpp"
 #include "host/report/result.hpp"
+#include "host/requests/fast_sum.hpp"
 #include "host/requests/memory.hpp"
+#include "host/requests/stated_mass.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -30,10 +33,7 @@ void check_request(const SurfaceGravityRequest& r) {
         Fault::file_format,
         fmt::format("{} holds multipoles, whose series is not the field on the surface: take the mesh", r.body.mesh));
   if (r.body.charge) refuse("gravity on a surface is that of masses: leave --charge out");
-  if (r.mass && r.body.density) refuse("--mass and --density both say how heavy the body is; leave one out");
-  if (r.mass && !r.body.parts.empty())
-    refuse("--mass says the mass of a body of one density, and --part adds others: give --density in its place");
-  if (r.mass && !(r.mass->value > 0)) refuse(fmt::format("--mass {}: it must be above 0", r.mass->value));
+  check_mass(r.body, r.mass);
   if (r.place == ValuePlace::points && r.points.empty()) refuse("there is no point to ask for gravity at");
   if (r.place == ValuePlace::points && r.height)
     refuse("--height is above faces or vertices, whose normals it follows; points stand where they are");
@@ -51,28 +51,6 @@ void check_request(const SurfaceGravityRequest& r) {
   if (r.guarantee && r.tolerance == 0)
     refuse("--guarantee is about what a tolerance leaves out, and --tolerance 0 leaves nothing out: leave one of them "
            "out");
-}
-
-// A number of a body with units has one, and of a body without has none.
-void check_unit(const char* option, const Measure& measure, bool stated, const char* example) {
-  if (measure.has_unit && !stated)
-    refuse(
-        fmt::format("{}: {} {} needs the mesh's unit of length: add --length-unit or --length, or give a bare number "
-                    "in the mesh's units with G = 1",
-                    option, measure.value, measure.unit));
-  if (!measure.has_unit && stated)
-    refuse(fmt::format("{} {}: it needs a unit, as in {}", option, measure.value, example));
-}
-
-void weigh(const SurfaceGravityRequest& r, Body& body) {
-  if (!r.mass) return;
-  check_unit("--mass", *r.mass, body.placement.units.stated, "6.69e15kg");
-  const double density = r.mass->value / body.volume;
-  if (!(density >= 1e-50) || !(density <= 1e50))
-    refuse(
-        fmt::format("--mass {}: of a volume of {:.6g} that is a density of {:.3g}, out of the range from 1e-50 to 1e50",
-                    r.mass->value, body.volume, density));
-  body.density = density;
 }
 
 std::optional<Spin> spin_of(const SurfaceGravityRequest& r, const Body& body) {
@@ -104,6 +82,11 @@ std::string places_text(const SurfaceGravityPlan& plan) {
   if (plan.request.place == ValuePlace::faces) return fmt::format("centroids of {} faces{}", plan.places, above);
   if (plan.request.place == ValuePlace::vertices) return fmt::format("{} vertices{}", plan.places, above);
   return fmt::format("{} points of {}", plan.places, plan.request.points_name);
+}
+
+std::unique_ptr<Backend> summing(const SurfaceGravityPlan& plan, const Backend& asked) {
+  const SurfaceGravityRequest& r = plan.request;
+  return fast_sum_backend(plan.body(), r.tolerance, Derivatives::first, plan.places, asked, r.threads);
 }
 
 BodyFieldProblem field_problem(const SurfaceGravityRequest& r) {
@@ -147,7 +130,8 @@ std::vector<std::pair<std::string, std::string>> facts_of(const SurfaceGravityRe
 } // namespace
 
 MemoryNeed SurfaceGravityPlan::memory(const Backend& backend) const {
-  MemoryNeed need = BodyField(body(), field_problem(request), backend).memory(places);
+  const auto cpu = summing(*this, backend);
+  MemoryNeed need = BodyField(body(), field_problem(request), cpu ? *cpu : backend).memory(places);
   // Places, normals and areas, gravity as vectors beside the columns, the mesh once more in the result.
   need.host +=
       places * (7 * sizeof(double) + 2 * sizeof(Vec3) + 8 * surface_gravity_numbers(request.place, request.guarantee));
@@ -163,7 +147,7 @@ SurfaceGravityPlan plan_surface_gravity(SurfaceGravityRequest request, Monitor& 
   plan.loaded = load_mass(request.body, Motion::held, monitor);
   if (request.mass) request.body.density.reset();
   Body& body = *plan.loaded.mesh;
-  weigh(request, body);
+  if (request.mass) weigh(*request.mass, body);
   if (request.height) {
     if (!std::isfinite(request.height->value))
       refuse(fmt::format("--height {}: it must be finite", request.height->value));
@@ -179,8 +163,11 @@ SurfaceGravityPlan plan_surface_gravity(SurfaceGravityRequest request, Monitor& 
   return plan;
 }
 
-SurfaceGravityResult surface_gravity(SurfaceGravityPlan plan, Backend& backend, Monitor& monitor) {
-  check_memory(plan.memory(backend), backend, "take a coarser mesh, or fewer points");
+SurfaceGravityResult surface_gravity(SurfaceGravityPlan plan, Backend& asked, Monitor& monitor) {
+  check_memory(plan.memory(asked), asked, "take a coarser mesh, or fewer points");
+  const auto cpu = summing(plan, asked);
+  const Backend& backend = cpu ? *cpu : asked;
+  if (cpu) plan.loaded.notes.push_back(fast_sum_note(asked));
   SurfaceGravityResult s;
   s.subject = subject(plan.loaded);
   const Body& body = plan.body();
