@@ -1,3 +1,4 @@
+#include "host/colour_scale.hpp"
 #include "host/error.hpp"
 #include "host/io/file.hpp"
 #include "host/plot/label_places.hpp"

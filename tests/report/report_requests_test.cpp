@@ -53,8 +53,8 @@ TEST_CASE("figures are made by a call, of one map and of all that can be made", 
   CHECK(result.left_out.empty());
   request.expansions.maps.push_back(MapMethod::smooth);
   CHECK_THROWS_AS(make_figure(request, *backend, silent_monitor()), Error);
-  CHECK(lines_alone(FigureKind::spectra));
-  CHECK_FALSE(lines_alone(FigureKind::orders));
+  CHECK(can_be_svg(FigureKind::spectra));
+  CHECK_FALSE(can_be_svg(FigureKind::orders));
 }
 
 TEST_CASE("a result becomes a page by a call", "[requests][report]") {

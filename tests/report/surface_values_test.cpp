@@ -22,7 +22,7 @@ namespace {
 
 /// On a ball: its height, of faces or vertices.
 MeshValues heights(ValuePlace place, int level = 2) {
-  const RawMesh mesh = icosphere(level);
+  const RawMesh mesh = test::icosphere(level);
   MeshValues values{.title = "a ball", .place = place, .vertices = mesh.vertices, .faces = mesh.faces};
   values.places = mesh.vertices;
   if (place == ValuePlace::faces) {
