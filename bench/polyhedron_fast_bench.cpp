@@ -32,7 +32,7 @@ struct Options {
   int splits = 2, runs = 3;
   double tolerance = 0;
   unsigned threads = 0;
-  bool guarantee = false, tensor = false, everywhere = false, crossover = false, json = false;
+  bool guarantee = false, tensor = false, everywhere = false, crossover = false, lists = false, json = false;
 };
 
 // ESA's polyhedral-gravity-model 3.3.1 (J. Schuhmacher et al., 2024) as shipped, V, gradient and second derivatives of 5,520
@@ -59,6 +59,7 @@ public:
     const RawMesh whole = load(options_.mesh);
     mesh_ = whole;
     for (int i = 0; i < options_.splits; ++i) mesh_ = split_midpoint(mesh_);
+    if (options_.lists) return polyhedron_lists(mesh_, options_.guarantee);
     document_ = {{"benchmark", "polyhedron_fast"},
                  {"faces", mesh_.faces.size()},
                  {"runs", options_.runs},
@@ -220,10 +221,12 @@ int main(int argc, char** argv) {
   app.add_flag("--everywhere", options.everywhere,
                "Errors at all points, against the direct sum of the mesh before it is split");
   app.add_flag("--crossover", options.crossover, "Times the direct sum against the fast one at small sizes instead");
+  app.add_flag("--lists", options.lists, "Tells instead what the lists of pairs take");
   app.add_flag("--json", options.json, "As JSON");
   if (const auto end = bench::read_command_line(app, argc, argv)) return *end;
   try {
-    if (options.crossover) return bench::polyhedron_crossover(options.runs, options.threads);
+    if (options.crossover)
+      return bench::polyhedron_crossover({options.runs, options.threads, options.guarantee, options.tensor});
     return bench::Bench(options).run();
   } catch (const Error& error) {
     fmt::print(stderr, "polyhedron_fast_bench: {}\n", error.what());
