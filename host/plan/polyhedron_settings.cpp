@@ -22,10 +22,14 @@ FastSettings fast_settings(const PolyhedronProblem& problem) {
 
 bool fast_sum_pays(const PolyhedronProblem& problem, std::uint64_t points) {
   if (problem.tolerance == 0) return false;
-  // In the time of one face at one point in the direct sum.
-  const double digits = -std::log10(problem.tolerance), faces = double(problem.faces.size());
-  const double a_face = 600, a_point = std::max(500.0, 800 + 430 * (digits - 6));
-  return faces * double(points) > 1.2 * (a_face * faces + a_point * double(points));
+  // In the time of one face at one point in the direct sum, with AVX2, as bench/polyhedron_fast.md has it: 1e-6, 1e-9 and 1e-12
+  // were measured. Where points lie apart a point's share grows with the faces between two of them.
+  double digits = std::max(6.0, -std::log10(problem.tolerance));
+  if (problem.derivatives == Derivatives::second) digits = std::max(digits, 8.0);
+  if (problem.guarantee) digits += 1;
+  const double a_face = 85 + 33 * (digits - 6), a_point = 130 + 145 * (digits - 6), of_both = 110 + 65 * (digits - 6);
+  const double faces = double(problem.faces.size()), all = double(points);
+  return faces * all > a_face * faces + a_point * all + of_both * std::sqrt(faces * all);
 }
 
 } // namespace cowgpu::plan
