@@ -53,6 +53,7 @@ ZeroVelocityRequest parse_surface(const Options& options) {
     if (!number) request.equilibrium = 0;
   } else {
     request.jacobi = read_number(text);
+    request.equilibrium = 0;
   }
   if (!request.jacobi && request.equilibrium == 0)
     throw Error(

@@ -110,8 +110,15 @@ void check_outputs(const Options& options) {
                   fmt::format("-o {}: GLB shows surfaces, and --at {} are points: take .vtp, .ply, "
                               ".csv or .nc",
                               output, options.at));
-    for (const std::string& name : input_files(options.body)) refuse_mesh_as_output(name, output);
+    const std::string beside = output + ".json"; // of a CSV
+    for (const std::string& name : input_files(options.body)) {
+      refuse_mesh_as_output(name, output);
+      refuse_mesh_as_output(name, beside);
+    }
     refuse_same_file(options.at, output);
+    refuse_same_file(options.at, beside);
+    if (std::count(options.outputs.begin(), options.outputs.end(), output) > 1)
+      throw Error(Fault::bad_argument, fmt::format("-o {} is named more than once", output));
   }
 }
 

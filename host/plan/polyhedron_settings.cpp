@@ -1,10 +1,33 @@
 #include "host/plan/polyhedron_settings.hpp"
 
-#include <algorithm>
+#include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace cowgpu::plan {
+
+namespace {
+
+// Area over that of the ball of the same volume, times the ratio of their radii: 1 for a ball, large for plates, needles and
+// shells, whose faces on both sides cancel in the sums.
+double thinness(const PolyhedronProblem& problem) {
+  if (problem.faces.empty()) return 1;
+  const Vec3 origin = problem.vertices[problem.faces[0][0]];
+  double area = 0, volume = 0;
+  for (const Face& face : problem.faces) {
+    const Vec3 a = problem.vertices[face[0]] - origin, b = problem.vertices[face[1]] - origin,
+               c = problem.vertices[face[2]] - origin;
+    area += (b - a).cross(c - a).norm() / 2;
+    volume += a.dot(b.cross(c)) / 6;
+  }
+  return area * std::cbrt(3 * std::abs(volume) / (4 * std::numbers::pi)) / (3 * std::abs(volume));
+}
+
+constexpr double thinnest_in_single = 3;
+
+} // namespace
 
 FastSettings fast_settings(const PolyhedronProblem& problem) {
   const double digits = -std::log10(problem.tolerance);
@@ -15,7 +38,11 @@ FastSettings fast_settings(const PolyhedronProblem& problem) {
   settings.order = std::clamp(int(std::lround(first + (digits - 6) * 5 / 3)), 4, largest_fast_order);
   settings.tau = problem.tolerance * (problem.guarantee ? 1. / 170 : 0.4 * std::pow(10, (digits - 6) / 15));
   settings.near = digits > 9.5 ? NearDigits::full : digits > 6.01 ? NearDigits::nine : NearDigits::single;
-  if (problem.derivatives == Derivatives::second && settings.near == NearDigits::single)
+  // What is proven holds for the values too, as far as doubles go.
+  if (problem.guarantee) settings.near = NearDigits::full;
+  // The rounding of single precision is a part of the layers on the faces, which thin bodies have more of than gravity.
+  if (settings.near == NearDigits::single &&
+      (problem.derivatives == Derivatives::second || !(thinness(problem) <= thinnest_in_single)))
     settings.near = NearDigits::nine;
   return settings;
 }

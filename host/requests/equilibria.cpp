@@ -6,9 +6,9 @@
 #include "host/physics/potential.hpp"
 #include "host/physics/zero_velocity.hpp"
 #include "host/report/result.hpp"
+#include "host/requests/body_measures.hpp"
 #include "host/requests/fast_sum.hpp"
 #include "host/requests/memory.hpp"
-#include "host/requests/stated_mass.hpp"
 
 #include <fmt/format.h>
 
@@ -33,8 +33,7 @@ void check_request(const EquilibriaRequest& r) {
                     r.body.mesh));
   if (r.body.charge) refuse("equilibria are those of gravity: leave --charge out");
   check_mass(r.body, r.mass);
-  if (!(r.spin_rate.value > 0) || !std::isfinite(r.spin_rate.value))
-    refuse(fmt::format("the spin {} must be above 0 and finite", r.spin_rate.value));
+  check_spin_rate(r.spin_rate);
   if (r.spin_axis) check_direction(*r.spin_axis, "the axis of --spin");
 }
 

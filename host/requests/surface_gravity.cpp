@@ -5,9 +5,9 @@
 #include "host/mesh/geometry.hpp"
 #include "host/physics/body_field.hpp"
 #include "host/report/result.hpp"
+#include "host/requests/body_measures.hpp"
 #include "host/requests/fast_sum.hpp"
 #include "host/requests/memory.hpp"
-#include "host/requests/stated_mass.hpp"
 
 #include <fmt/format.h>
 
@@ -22,6 +22,8 @@ namespace cowgpu {
 using namespace physics;
 
 namespace {
+
+constexpr double largest_height = 1e6; // in Brillouin radii: beyond it slopes and elevations are rounding
 
 [[noreturn]] void refuse(const std::string& sentence) {
   throw Error(Fault::bad_argument, sentence);
@@ -39,10 +41,7 @@ void check_request(const SurfaceGravityRequest& r) {
     refuse("--height is above faces or vertices, whose normals it follows; points stand where they are");
   if (r.spin_axis && !r.spin_rate)
     refuse("--spin says what the body turns about, and not how fast: add --period or --omega");
-  if (r.spin_rate && (!(r.spin_rate->value > 0) || !std::isfinite(r.spin_rate->value)))
-    refuse(
-        fmt::format("the spin {} rad/s must be above 0 and finite; without --period and --omega the body does not spin",
-                    r.spin_rate->value));
+  if (r.spin_rate) check_spin_rate(*r.spin_rate);
   if (r.spin_axis) check_direction(*r.spin_axis, "the axis of --spin");
   if (r.tolerance != 0 && !(r.tolerance >= least_polyhedron_tolerance && r.tolerance <= largest_polyhedron_tolerance))
     refuse(
@@ -152,6 +151,12 @@ SurfaceGravityPlan plan_surface_gravity(SurfaceGravityRequest request, Monitor& 
     if (!std::isfinite(request.height->value))
       refuse(fmt::format("--height {}: it must be finite", request.height->value));
     if (request.height->has_unit) check_unit("--height", *request.height, body.placement.units.stated, "10m");
+    if (request.height->value < 0)
+      refuse("--height is below 0, inside the body: it is above the surface; places inside are points, --at FILE");
+    if (request.height->value > largest_height * body.brillouin_radius)
+      refuse(fmt::format("--height: it is {:.3g} radii of the body, where nothing is left of its surface; up to {} are "
+                         "taken",
+                         request.height->value / body.brillouin_radius, largest_height));
     plan.height = request.height->value;
   }
   plan.spin = spin_of(request, body);

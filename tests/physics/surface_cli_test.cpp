@@ -166,6 +166,13 @@ TEST_CASE("surface refuses wrong units, bodies without a spin axis, open meshes 
   refused({"builtin:box", "--at", far}, 3, "farther than 1e150 radii");
   refused({"builtin:box", "--at", folder / "none.csv"}, 5, "cannot-read");
   refused({"builtin:box", "--at", far, "--height", "1"}, 2, "stand where they are");
+  refused({"builtin:box", "--height", "-0.1"}, 2, "inside the body");
+  refused({"builtin:box", "--height", "1e300"}, 2, "nothing is left of its surface");
+  refused({"builtin:box:1,2,3", "--period", "1e-300"}, 2, "from 1e-50 to 1e50");
+  const std::string points = folder / "points.csv.json", beside = folder / "points.csv";
+  std::ofstream(points) << "1,2,3\n";
+  refused({"builtin:box", "--at", points, "-o", beside}, 2, "points.csv.json");
+  refused({"builtin:box", "-o", beside, "-o", beside}, 2, "more than once");
   refused({"builtin:box", "-o", "out.txt"}, 2, ".vtp");
   refused({"builtin:box", "-o", folder / "no/such/out.vtp"}, 5, "cannot-write");
 }

@@ -225,7 +225,9 @@ TEST_CASE("what cannot be meant is refused in words before anything is summed", 
   refused(request, "not how fast");
   request.spin_axis.reset();
   request.spin_rate = Measure{0, false, {}};
-  refused(request, "must be above 0 and finite");
+  refused(request, "from 1e-50 to 1e50");
+  request.spin_rate->value = 1e200;
+  refused(request, "from 1e-50 to 1e50");
   request.spin_rate.reset();
   request.tolerance = 1e-13;
   refused(request, "it is from 1e-12 to 0.01");

@@ -1,4 +1,4 @@
-// Bodies whose mass is stated in place of their density, and measures that go with a body's units.
+// A mass that is stated in place of a density, rates of spins, and measures that go with a body's units.
 #pragma once
 
 #include "host/requests/load_body.hpp"
@@ -10,6 +10,9 @@ namespace cowgpu {
 
 /// Throws Error(bad_argument) for a mass that is not above 0, one beside a density, and one of a body with parts.
 void check_mass(const BodyRequest& body, const std::optional<Measure>& mass);
+
+/// Throws Error(bad_argument) for a rate that is not from 1e-50 to 1e50.
+void check_spin_rate(const Measure& rate);
 
 /// A number of a body with units has one, and of a body without has none: throws Error(bad_argument), naming `option` and giving
 /// `example`, where it does not.

@@ -1,4 +1,4 @@
-#include "host/requests/stated_mass.hpp"
+#include "host/requests/body_measures.hpp"
 
 #include "host/error.hpp"
 
@@ -16,14 +16,21 @@ void check_mass(const BodyRequest& body, const std::optional<Measure>& mass) {
   if (!(mass->value > 0)) throw Error(Fault::bad_argument, fmt::format("--mass {}: it must be above 0", mass->value));
 }
 
+void check_spin_rate(const Measure& rate) {
+  if (!(rate.value >= 1e-50) || !(rate.value <= 1e50))
+    throw Error(Fault::bad_argument,
+                fmt::format("a body that turns at {} rad/s: the rate must be from 1e-50 to 1e50", rate.value));
+}
+
 void check_unit(const char* option, const Measure& measure, bool stated, const char* example) {
   if (measure.has_unit && !stated)
-    throw Error(Fault::bad_argument,
-                fmt::format("{}: {} {} needs the mesh's unit of length: add --length-unit or --length, or give a bare "
-                            "number in the mesh's units with G = 1",
-                            option, measure.value, measure.unit));
+    throw Error(
+        Fault::bad_argument,
+        fmt::format("{} with the unit {} needs the mesh's unit of length: add --length-unit or --length, or give "
+                    "a bare number in the mesh's units with G = 1",
+                    option, measure.unit));
   if (!measure.has_unit && stated)
-    throw Error(Fault::bad_argument, fmt::format("{} {}: it needs a unit, as in {}", option, measure.value, example));
+    throw Error(Fault::bad_argument, fmt::format("{}: it needs a unit, as in {}", option, example));
 }
 
 void weigh(const Measure& mass, Body& body) {
