@@ -145,7 +145,9 @@ MemoryNeed FastPolyhedron::memory(std::uint64_t points) const {
   const std::uint64_t held = PolyhedronSources::bytes(faces, largest_tree_leaf, settings.order);
   const std::uint64_t made = PolyhedronSources::bytes_while_made(faces, settings.order, threads_);
   const std::uint64_t sharp = second() ? 64 * faces : 0;
-  // Pairs of a task: each cell of points has at most some hundred of them, measured.
+  // Lists of pairs: of tasks of 2048 points and more, 18 to 69 bytes a point with 88,320 faces. Few points far apart take more
+  // each, 160 bytes of 256 and 768 of 16, in all below the room that a thread gets (bench/polyhedron_fast.md). Not a bound for
+  // surfaces without volume: their pairs are all near.
   const std::uint64_t tasks =
       threads_ * (FarField::bytes(std::min<std::uint64_t>(points, task_points), largest_tree_leaf, settings.order) +
                   std::min<std::uint64_t>(points, task_points) * 200 + (1 << 20));
