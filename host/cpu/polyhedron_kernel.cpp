@@ -262,9 +262,17 @@ void sum_all(const plan::PolyhedronPatches<hn::TFromD<Tag>>& patches, std::span<
   auto* sides = reinterpret_cast<typename Sum::Side*>(room + corner_bytes);
   auto* touched = reinterpret_cast<std::uint8_t*>(room + corner_bytes + side_bytes);
   if constexpr (Second) std::fill_n(touched, patches.most_edges(), std::uint8_t(0));
-  const T margin = sizeof(T) == 8 ? T(touching) : std::max(T(touching), 4 * std::numeric_limits<T>::epsilon());
   for (const std::uint32_t p : which) {
     const auto& patch = patches[p];
+    // In single precision heights are right to the rounding of the patch's own coordinates. What is called on a face and is not
+    // loses 2 pi times its height of the gradient, so that the margin is no wider than it must be.
+    T margin = T(touching);
+    if constexpr (sizeof(T) == 4) {
+      T reach = 0;
+      for (const auto& v : patch.vertices)
+        for (const T x : v) reach = std::max(reach, std::abs(x));
+      margin = std::max(margin, 8 * std::numeric_limits<T>::epsilon() * reach);
+    }
     for (std::size_t first = 0; first < count; first += lanes) {
       const std::size_t own = std::min(lanes, count - first);
       alignas(64) T at[3][lanes];

