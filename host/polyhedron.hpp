@@ -41,11 +41,9 @@ struct PolyhedronProblem {
 
 /// One entry a point, in their order.
 struct PolyhedronValues {
-  PotentialField field; ///< in the mesh's unit squared, its gradient in units, second derivatives without unit
-  /// Winding number about the point: -(trace of the second derivatives)/4 pi. The tolerance is the gradient's, and this one is
-  /// wrong by up to a thousand times it.
-  std::vector<double> winding;
-  std::vector<double> bound; ///< where it is guaranteed: of the gradient's truncation; empty elsewhere
+  PotentialField field;        ///< in the mesh's unit squared, its gradient in units, second derivatives without unit
+  std::vector<double> winding; ///< winding number about the point: -(trace of the second derivatives)/4 pi
+  std::vector<double> bound;   ///< where it is guaranteed: of the gradient's truncation; empty elsewhere
   /// 1 on edges and vertices (where the faces that meet there are not coplanar), whose second derivatives are infinite: what
   /// is given there leaves the edge out. Empty where no second derivatives were asked for.
   std::vector<std::uint8_t> on_edge;
