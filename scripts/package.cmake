@@ -51,7 +51,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/include/cowgpu DESTINATION ${CMAKE_
 foreach(folder "" geometry/ mesh/ mass/ map/ spectrum/ flow/ io/ physics/ paper/ plot/ report/ figures/ reproduce/ requests/)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host/${folder}*.hpp)
   list(FILTER headers EXCLUDE REGEX
-    "/(counted|far_field|flush_denormals|gltf|gltf_document|netcdf|quarter_turn|result_json|tinygltf|version)\\.hpp$")
+    "/(closed_forms|counted|far_field|flush_denormals|gltf|gltf_document|netcdf|physics/polyhedron|quarter_turn|result_json|tinygltf|version)\\.hpp$")
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cowgpu/host/${folder} COMPONENT development)
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/host/plan/legendre.hpp # held by a class of theirs

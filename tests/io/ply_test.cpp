@@ -132,7 +132,7 @@ TEST_CASE("damaged PLY files are refused with the line or the byte", "[ply]") {
     std::string bytes, fault, says;
   };
   const std::vector<Case> cases = {
-      {"", "file-truncated", ":0:"},
+      {"", "file-truncated", ":1:"},
       {"OFF\n", "file-format", "not a PLY file"},
       {replaced(whole, "binary_little_endian", "binary_big_endian"), "file-format", "x.ply:2: 'binary_big_endian"},
       {replaced(whole, "binary_little_endian", "ascii"), "file-format", "x.ply:2:"},

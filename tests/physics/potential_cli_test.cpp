@@ -232,7 +232,7 @@ TEST_CASE("what is no place, no order and no unit is refused by name", "[potenti
   std::ofstream(nothing) << "# nobody\n";
   std::ofstream(infinite) << "1,2,nan\n";
   const std::string body = "builtin:box";
-  refused({body}, 2, "--at, --sphere or --plane");
+  refused({body}, 2, "--at, --sphere, --plane or --grid");
   refused({body, "--at", "9,9,9", "--sphere", "9"}, 2, "give one of them");
   refused({body, "--at", "9,9,nan"}, 2, "three finite numbers");
   refused({body, "--at", broken}, 3, "broken.txt:2");
