@@ -12,6 +12,7 @@ Device::Device(std::shared_ptr<Instance> instance, const PhysicalDevice& physica
   if (!physical.usable())
     throw Error(Failure::no_fp64, 0,
                 fmt::format("the device {} lacks double precision, subgroup shuffles or a compute queue", name_));
+  if (software()) patience_.slices = 3000;
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
   queue.queueFamilyIndex = std::uint32_t(physical.queue_family);

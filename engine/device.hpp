@@ -15,11 +15,12 @@ namespace cowgpu::engine {
 class Kernel;
 struct KernelInfo;
 
-/// How long a batch is waited for. It is bounded to well under a second of work; a minute without an end is a hang. Slices of
+/// How long a batch is waited for. It is bounded to well under a second of work; a minute without an end is a hang, and five
+/// minutes of a software device, whose driver compiles a kernel when it first runs, beside whatever else the CPU does. Slices of
 /// waiting are counted, not the clock: while the process is suspended, or the clock jumps, none is waited.
 struct Patience {
   std::uint64_t slice_ns = 100'000'000;
-  std::uint32_t slices = 600;    ///< after so many the device is given up as lost
+  std::uint32_t slices = 600;    ///< after so many the device is given up as lost; 3000 of software devices
   std::uint32_t after_stop = 50; ///< after so many from a wish to stop on, and the device is given up too
 };
 
