@@ -33,8 +33,14 @@ using Numbers = std::vector<double>; ///< a list of numbers, in less memory
 struct Object {
   std::vector<Member> members;
 
-  Object() = default;
+  // What makes and copies members is defined below them.
+  Object() noexcept;
   Object(std::initializer_list<Member> list);
+  Object(const Object& other);
+  Object(Object&& other) noexcept;
+  Object& operator=(const Object& other);
+  Object& operator=(Object&& other) noexcept;
+  ~Object();
 
   /// At the end.
   void add(std::string key, Value value);
@@ -95,7 +101,13 @@ struct Member {
   Value value;
 };
 
+inline Object::Object() noexcept = default;
 inline Object::Object(std::initializer_list<Member> list) : members(list) {}
+inline Object::Object(const Object& other) = default;
+inline Object::Object(Object&& other) noexcept = default;
+inline Object& Object::operator=(const Object& other) = default;
+inline Object& Object::operator=(Object&& other) noexcept = default;
+inline Object::~Object() = default;
 
 inline void Object::add(std::string key, Value value) {
   members.push_back({std::move(key), std::move(value)});
