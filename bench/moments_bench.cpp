@@ -118,18 +118,8 @@ public:
   }
 
 private:
-  static RawMesh load(const std::string& name) {
-    if (!name.empty()) return load_mesh(name);
-    try {
-      return load_mesh("benchmark");
-    } catch (const Error& error) {
-      if (error.fault() != Fault::mesh_missing) throw;
-      return load_mesh("builtin:cow");
-    }
-  }
-
   void open() {
-    const ClosedSurface surface = ClosedSurface::from(load(options_.mesh));
+    const ClosedSurface surface = ClosedSurface::from(benchmark_mesh(options_.mesh, "builtin:cow"));
     mesh_ = surface.mesh();
     base_.origin = centre_of_mass(surface);
     base_.reference_radius = brillouin_radius(surface, base_.origin);

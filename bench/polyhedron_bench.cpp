@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 
 namespace cowgpu::bench {
@@ -87,9 +86,9 @@ public:
       std::vector<double> seconds, used;
       RunReport report;
       for (int run = 0; run < options_.runs; ++run) {
-        const std::clock_t before = std::clock(); // of all threads
+        const double before = processor_seconds();
         prepared->at(points, silent_monitor(), &report);
-        used.push_back(double(std::clock() - before) / CLOCKS_PER_SEC);
+        used.push_back(processor_seconds() - before);
         seconds.push_back(report.seconds);
       }
       const double rate = report.elements / median(seconds) / 1e6;

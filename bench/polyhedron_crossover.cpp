@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 #include <numbers>
 
@@ -22,9 +21,9 @@ namespace {
 constexpr double most_work = 3e8; // faces times points of a direct sum
 
 double core_seconds(const PreparedPolyhedron& prepared, const std::vector<Vec3>& points, RunReport* report = nullptr) {
-  const std::clock_t before = std::clock(); // of all threads
+  const double before = processor_seconds();
   prepared.at(points, silent_monitor(), report);
-  return double(std::clock() - before) / CLOCKS_PER_SEC;
+  return processor_seconds() - before;
 }
 
 // Spread over the surface.

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -56,7 +55,7 @@ public:
   explicit Bench(const Options& options) : Report(options.json), options_(options) {}
 
   int run() {
-    const RawMesh whole = load(options_.mesh);
+    const RawMesh whole = benchmark_mesh(options_.mesh, "builtin:cow@1");
     mesh_ = whole;
     for (int i = 0; i < options_.splits; ++i) mesh_ = split_midpoint(mesh_);
     if (options_.lists) return polyhedron_lists(mesh_, options_.guarantee);
@@ -86,16 +85,6 @@ public:
   }
 
 private:
-  static RawMesh load(const std::string& name) {
-    if (!name.empty()) return load_mesh(name);
-    try {
-      return load_mesh("benchmark");
-    } catch (const Error& error) {
-      if (error.fault() != Fault::mesh_missing) throw;
-      return load_mesh("builtin:cow@1");
-    }
-  }
-
   // The surface is the same before it is split, with fewer faces.
   void find_truth(const RawMesh& whole) {
     double volume = 0;
@@ -161,10 +150,10 @@ private:
     double need = 0, peak = 0;
     for (int run = 0; run < options_.runs; ++run) {
       Resident resident;
-      const std::clock_t before = std::clock(); // of all threads
+      const double before = processor_seconds();
       const auto prepared = cpu::fast_polyhedron(problem, options_.threads);
       const PolyhedronValues found = prepared->at(points_, silent_monitor(), &report);
-      used.push_back(double(std::clock() - before) / CLOCKS_PER_SEC);
+      used.push_back(processor_seconds() - before);
       seconds.push_back(report.seconds);
       if (run > 0) continue;
       peak = resident.most();

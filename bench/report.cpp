@@ -1,10 +1,14 @@
 #include "bench/report.hpp"
 
+#include "host/error.hpp"
+#include "host/io/mesh_source.hpp"
+
 #include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <map>
 
 namespace cowgpu::bench {
@@ -20,6 +24,20 @@ double median_ratio(const std::vector<double>& a, const std::vector<double>& b) 
   std::vector<double> ratios;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) ratios.push_back(a[i] / b[i]);
   return median(std::move(ratios));
+}
+
+double processor_seconds() {
+  return double(std::clock()) / CLOCKS_PER_SEC;
+}
+
+RawMesh benchmark_mesh(const std::string& name, const std::string& instead) {
+  if (!name.empty()) return load_mesh(name);
+  try {
+    return load_mesh("benchmark");
+  } catch (const Error& error) {
+    if (error.fault() != Fault::mesh_missing) throw;
+    return load_mesh(instead);
+  }
 }
 
 // Highway's better targets have the lower bits.

@@ -1,6 +1,8 @@
 // What the benchmarks share: statistics of times, checks, and the report as text or JSON.
 #pragma once
 
+#include "host/mesh/raw_mesh.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +20,12 @@ double median(std::vector<double> values);
 
 /// Median of a[i] / b[i]: both sides of one round share what slowed the machine.
 double median_ratio(const std::vector<double>& a, const std::vector<double>& b);
+
+/// Processor seconds that all threads of this process have used so far.
+double processor_seconds();
+
+/// The mesh `name`; of an empty name the benchmark mesh, and `instead` where that is not there.
+RawMesh benchmark_mesh(const std::string& name, const std::string& instead);
 
 /// The widest instruction set the CPU path may use from now on: AVX3, AVX2, SSE4 or SSSE3; empty: the machine's.
 void use_instruction_set(const std::string& name);

@@ -23,7 +23,7 @@ using Work = std::array<std::uint32_t, 4>; // group, range, step, how many
 struct Dispatches {
   std::vector<Work> work;
   std::vector<std::array<std::uint32_t, 2>> parts;
-  std::vector<std::uint64_t> steps; // of each group
+  std::vector<std::uint64_t> steps; // [group]: steps of its list
 };
 
 // `strips`: steps that strips begin with. Dispatches end where strips do: what a step needs of those before is not kept.

@@ -1,4 +1,6 @@
 #include "host/cli/physics.hpp"
+#include "host/cli/quantities.hpp"
+#include "host/cli/spin_options.hpp"
 #include "host/cli/surface_outputs.hpp"
 
 #include "host/error.hpp"
@@ -7,41 +9,19 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
+#include <optional>
 #include <string_view>
 
 namespace cowgpu::cli {
 namespace {
 
 struct Options {
-  std::string mass, period, omega, spin;
+  SpinOptions spin;
   double smallest = 1e-4;
   int cells = 1'000'000;
   std::string surface, extent, output;
   int surface_cells = 64;
 };
-
-Measure parse_rate(const Options& options, std::vector<std::string>& notes) {
-  if (options.period.empty() == options.omega.empty())
-    throw Error(Fault::bad_argument, "--period or --omega says how fast the body turns: give one of them");
-  if (!options.period.empty()) {
-    Measure period = parse_measure("--period", options.period, Dimension::time);
-    if (!(period.value > 0))
-      throw Error(Fault::bad_argument, fmt::format("--period {}: it must be above 0", options.period));
-    period.value = 2 * std::numbers::pi / period.value;
-    return period;
-  }
-  const Measure omega = parse_measure("--omega", options.omega, Dimension::angular_rate);
-  if (!(omega.value > 0))
-    throw Error(Fault::bad_argument,
-                fmt::format("--omega {}: it must be above 0; it counts about --spin", options.omega));
-  if (omega.unit == "Hz" || omega.unit == "/s")
-    notes.push_back(
-        fmt::format("--omega {} is read as an angular frequency, 1 Hz being 1 rad/s; --period says the time "
-                    "of a turn",
-                    options.omega));
-  return omega;
-}
 
 // A constant, or the number of an equilibrium: "E2".
 ZeroVelocityRequest parse_surface(const Options& options) {
@@ -49,8 +29,7 @@ ZeroVelocityRequest parse_surface(const Options& options) {
   const std::string_view text = options.surface;
   if (text.starts_with('E')) {
     const auto number = read_whole(text.substr(1), 1, 1000);
-    if (number) request.equilibrium = *number;
-    if (!number) request.equilibrium = 0;
+    request.equilibrium = number ? *number : 0;
   } else {
     request.jacobi = read_number(text);
     request.equilibrium = 0;
@@ -97,9 +76,11 @@ void write_surface(const Options& options, const EquilibriaResult& result, Surfa
 EquilibriaRequest request_of(const PhysicsCall& call, const Options& options) {
   EquilibriaRequest request;
   request.body = call.body;
-  if (!options.mass.empty()) request.mass = parse_measure("--mass", options.mass, Dimension::mass);
-  request.spin_rate = parse_rate(options, request.notes);
-  if (!options.spin.empty()) request.spin_axis = parse_axis("--spin", options.spin);
+  request.mass = stated_mass(options.spin);
+  const std::optional<Measure> rate = spin_rate(options.spin, request.notes);
+  if (!rate) throw Error(Fault::bad_argument, "--period or --omega says how fast the body turns: give one of them");
+  request.spin_rate = *rate;
+  request.spin_axis = spin_axis(options.spin);
   request.smallest = options.smallest;
   request.cells = std::uint64_t(options.cells);
   if (!options.surface.empty()) request.surface = parse_surface(options);
@@ -110,23 +91,7 @@ EquilibriaRequest request_of(const PhysicsCall& call, const Options& options) {
 
 Solve add_equilibria(Command& command, Common& common, BodyOptions&) {
   const auto options = std::make_shared<Options>();
-  command.add_option("--mass", options->mass, "Mass of the body with its unit, instead of --density: 6.69e15kg")
-      ->type_name("MASS")
-      ->check(not_empty());
-  command
-      .add_option("--period", options->period,
-                  "The body spins, one turn in this time: 5.27h; without units of the mesh a bare number, G being 1")
-      ->type_name("TIME")
-      ->check(not_empty());
-  command.add_option("--omega", options->omega, "The same as an angular rate: 3.3e-4rad/s, instead of --period")
-      ->type_name("RATE")
-      ->check(not_empty());
-  command
-      .add_option("--spin", options->spin,
-                  "Axis that it spins about, through its centre of mass: x, y, z or X,Y,Z (default: the axis of the "
-                  "largest moment of inertia)")
-      ->type_name("AXIS")
-      ->check(not_empty());
+  add_spin_options(command, options->spin, "its centre of mass");
   command
       .add_option("--smallest", options->smallest,
                   "How far cells are refined before they count as undecided: 1e-8 to 0.1, in radii of the ball with "

@@ -1,6 +1,7 @@
 #include "host/cli/body_options.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/quantities.hpp"
+#include "host/cli/spin_options.hpp"
 #include "host/requests/surface_gravity.hpp"
 
 #include "host/error.hpp"
@@ -14,14 +15,14 @@
 
 #include <algorithm>
 #include <memory>
-#include <numbers>
 
 namespace cowgpu::cli {
 namespace {
 
 struct Options {
   BodyOptions body;
-  std::string at = "faces", height, mass, period, omega, spin, colour;
+  SpinOptions spin;
+  std::string at = "faces", height, colour;
   std::vector<std::string> outputs;
   double tolerance = default_surface_tolerance;
   bool guarantee = false, json = false, dry_run = false;
@@ -40,36 +41,13 @@ void read_places(const Options& options, SurfaceGravityRequest& request) {
   if (!options.height.empty()) request.height = parse_measure("--height", options.height, Dimension::length);
 }
 
-void read_spin(const Options& options, SurfaceGravityRequest& request) {
-  if (!options.period.empty() && !options.omega.empty())
-    throw Error(Fault::bad_argument, "--omega and --period both say how fast the body turns; leave one out");
-  if (!options.period.empty()) {
-    Measure period = parse_measure("--period", options.period, Dimension::time);
-    if (!(period.value > 0))
-      throw Error(Fault::bad_argument, fmt::format("--period {}: it must be above 0", options.period));
-    period.value = 2 * std::numbers::pi / period.value;
-    request.spin_rate = period;
-  }
-  if (!options.omega.empty()) {
-    request.spin_rate = parse_measure("--omega", options.omega, Dimension::angular_rate);
-    if (!(request.spin_rate->value > 0))
-      throw Error(Fault::bad_argument,
-                  fmt::format("--omega {}: it must be above 0; it counts about --spin", options.omega));
-    if (request.spin_rate->unit == "Hz")
-      request.notes.push_back(
-          fmt::format("--omega {} is read as an angular frequency, 1 Hz being 1 rad/s; --period says "
-                      "the time of a turn",
-                      options.omega));
-  }
-  if (!options.spin.empty()) request.spin_axis = parse_axis("--spin", options.spin);
-}
-
 SurfaceGravityRequest request_of(const Options& options, const Common& common) {
   SurfaceGravityRequest request;
   request.body = body_request(options.body);
-  if (!options.mass.empty()) request.mass = parse_measure("--mass", options.mass, Dimension::mass);
   read_places(options, request);
-  read_spin(options, request);
+  request.mass = stated_mass(options.spin);
+  request.spin_rate = spin_rate(options.spin, request.notes);
+  request.spin_axis = spin_axis(options.spin);
   request.tolerance = options.tolerance;
   request.guarantee = options.guarantee;
   request.threads = common.threads;
@@ -110,7 +88,7 @@ void check_outputs(const Options& options) {
                   fmt::format("-o {}: GLB shows surfaces, and --at {} are points: take .vtp, .ply, "
                               ".csv or .nc",
                               output, options.at));
-    const std::string beside = output + ".json"; // of a CSV
+    const std::string beside = output + ".json"; // goes with a CSV
     for (const std::string& name : input_files(options.body)) {
       refuse_mesh_as_output(name, output);
       refuse_mesh_as_output(name, beside);
@@ -136,8 +114,10 @@ void run(const Options& options, const Common& common) {
   SurfaceGravityPlan plan = plan_surface_gravity(std::move(request), monitor);
   plan.extra_bytes = file_memory(options, plan);
   if (options.dry_run) {
-    check_memory(plan.memory(*backend), *backend, "take a coarser mesh, or fewer points");
-    write_plan(plan, *backend);
+    const auto own = plan.own_backend(*backend);
+    const Backend& summing = own ? *own : *backend;
+    check_memory(plan.memory(summing), summing, "take a coarser mesh, or fewer points");
+    write_plan(plan, summing);
     return;
   }
   const SurfaceGravityResult result = surface_gravity(std::move(plan), *backend, monitor);
@@ -161,9 +141,6 @@ void add_surface(Command& app, Common& common) {
       "surface",
       "Gravity on the surface of a body: potential, g, slope and elevation at each face or vertex, or at points");
   add_body_options(*command, options->body);
-  command->add_option("--mass", options->mass, "Mass of the body with its unit, instead of --density: 6.69e15kg")
-      ->type_name("MASS")
-      ->check(not_empty());
   command
       ->add_option(
           "--at", options->at,
@@ -175,21 +152,7 @@ void add_surface(Command& app, Common& common) {
   command->add_option("--height", options->height, "So far above faces or vertices, along their normals: 10m")
       ->type_name("LENGTH")
       ->check(not_empty());
-  command
-      ->add_option("--period", options->period,
-                   "The body spins, one turn in this time: 5.27h; without units of the mesh a bare number, G being 1")
-      ->type_name("TIME")
-      ->check(not_empty());
-  command->add_option("--omega", options->omega, "The same as an angular rate: 3.3e-4rad/s, instead of --period")
-      ->type_name("RATE")
-      ->check(not_empty());
-  command
-      ->add_option(
-          "--spin", options->spin,
-          "Axis that it spins about, through --origin: x, y, z or X,Y,Z (default: the axis of the largest moment "
-          "of inertia)")
-      ->type_name("AXIS")
-      ->check(not_empty());
+  add_spin_options(*command, options->spin, "--origin");
   command
       ->add_option("--tolerance", options->tolerance,
                    "Error allowed of g, as a part of G M/R^2: 1e-12 to 1e-2, or 0 to sum all faces everywhere")

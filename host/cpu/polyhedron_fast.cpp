@@ -20,7 +20,7 @@
 namespace cowgpu::cpu {
 namespace {
 
-using plan::FarField;
+using plan::FarSums;
 using plan::PolyhedronPatches;
 using Rows = plan::PolyhedronRows;
 
@@ -28,8 +28,8 @@ using Rows = plan::PolyhedronRows;
 constexpr double farthest = 0x1p100;
 
 // What does not depend on points.
-struct Body {
-  Body(const PolyhedronProblem& problem, const plan::FastSettings& settings, unsigned threads, Monitor& monitor)
+struct Prepared {
+  Prepared(const PolyhedronProblem& problem, const plan::FastSettings& settings, unsigned threads, Monitor& monitor)
       : unit(plan::polyhedron_unit(problem.vertices)), touching(plan::touching_distance(problem.vertices) / unit),
         translations(settings.order),
         sources(problem.vertices, problem.faces, unit, plan::largest_tree_leaf, translations, threads, monitor) {
@@ -59,13 +59,13 @@ struct Body {
 
 // One thread's memory.
 struct Worker {
-  explicit Worker(const Body& body) : far(body.sources, body.translations) {}
+  explicit Worker(const Prepared& prepared) : far(prepared.sources, prepared.translations) {}
 
   struct alignas(64) Line {
     double values[8];
   };
   plan::TaskPairs pairs;
-  FarField far;
+  FarSums far;
   PolyhedronScratch scratch;
   std::vector<Line> points, sums;
   std::vector<std::uint32_t> patches;
@@ -80,18 +80,18 @@ void check(const PolyhedronProblem& problem) {
 }
 
 // The field of a point mass.
-void set_farthest(const Body& body, const Vec3& from, std::size_t i, PolyhedronValues& values) {
-  const double distance = from.stableNorm(), volume = body.sources.volume();
+void set_farthest(const Prepared& prepared, const Vec3& from, std::size_t i, PolyhedronValues& values) {
+  const double distance = from.stableNorm(), volume = prepared.sources.volume();
   const Vec3 direction = from / distance;
   const double value = volume / distance, slope = value / distance, curve = slope / distance;
-  values.field.value[i] = value * body.unit * body.unit;
-  if (!values.field.gradient.empty()) values.field.gradient[i] = -slope * body.unit * direction;
+  values.field.value[i] = value * prepared.unit * prepared.unit;
+  if (!values.field.gradient.empty()) values.field.gradient[i] = -slope * prepared.unit * direction;
   if (!values.field.hessian.empty()) {
     const Eigen::Matrix3d h = curve * (3 * direction * direction.transpose() - Eigen::Matrix3d::Identity());
     values.field.hessian[i] = {h(0, 0), h(0, 1), h(0, 2), h(1, 1), h(1, 2), h(2, 2)};
   }
   // What a point leaves out is of the second degree, 2^-200 of this.
-  if (!values.bound.empty()) values.bound[i] = slope * body.unit * 0x1p-100;
+  if (!values.bound.empty()) values.bound[i] = slope * prepared.unit * 0x1p-100;
 }
 
 class FastPolyhedron final : public PreparedPolyhedron {
@@ -103,37 +103,37 @@ public:
   PolyhedronValues at(std::span<const Vec3> points, Monitor& monitor, RunReport* report) const override;
 
 private:
-  std::shared_ptr<const Body> body(const plan::FastSettings& settings, Monitor& monitor) const;
+  std::shared_ptr<const Prepared> prepare(const plan::FastSettings& settings, Monitor& monitor) const;
   struct Call;
   void find_pairs(const Call& call, std::uint32_t task, Worker& worker) const;
   void sum_task(const Call& call, std::uint32_t task, Worker& worker, PolyhedronValues& values) const;
   void sum_leaf(const Call& call, std::uint32_t leaf, Worker& worker, PolyhedronValues& values) const;
-  void sum_far(const Body& body, std::span<const Vec3> points, std::span<const std::uint32_t> far, Monitor& monitor,
-               PolyhedronValues& values) const;
+  void sum_far(const Prepared& prepared, std::span<const Vec3> points, std::span<const std::uint32_t> far,
+               Monitor& monitor, PolyhedronValues& values) const;
   bool second() const { return problem_.derivatives == Derivatives::second; }
 
   PolyhedronProblem problem_;
   unsigned threads_;
   mutable std::mutex mutex_;
-  mutable std::shared_ptr<const Body> body_;
+  mutable std::shared_ptr<const Prepared> prepared_;
 };
 
 // What one call of at() sums.
 struct FastPolyhedron::Call {
-  const Body& body;
+  const Prepared& prepared;
   const plan::PlaceTree& targets;
   std::span<const Vec3> points;          ///< in units, in the tree's order
   std::span<const std::uint32_t> origin; ///< [point in the tree's order]: index of the caller's
   SumDigits digits;
   bool single;
   plan::PairTolerance tolerance;
-  double limit; ///< of A's bound at each point, where it is guaranteed; in units
+  double limit; ///< largest bound of the gradient's truncation that is allowed, where it is guaranteed; in units
 };
 
-std::shared_ptr<const Body> FastPolyhedron::body(const plan::FastSettings& settings, Monitor& monitor) const {
+std::shared_ptr<const Prepared> FastPolyhedron::prepare(const plan::FastSettings& settings, Monitor& monitor) const {
   const std::lock_guard lock(mutex_);
-  if (!body_) body_ = std::make_shared<const Body>(problem_, settings, threads_, monitor);
-  return body_;
+  if (!prepared_) prepared_ = std::make_shared<const Prepared>(problem_, settings, threads_, monitor);
+  return prepared_;
 }
 
 MemoryNeed FastPolyhedron::memory(std::uint64_t points) const {
@@ -146,10 +146,9 @@ MemoryNeed FastPolyhedron::memory(std::uint64_t points) const {
   const std::uint64_t made = PolyhedronSources::bytes_while_made(faces, settings.order, threads_);
   const std::uint64_t sharp = second() ? 64 * faces : 0;
   // Lists of pairs: of tasks of 2048 points and more, 18 to 69 bytes a point with 88,320 faces. Few points far apart take more
-  // each, 160 bytes of 256 and 768 of 16, in all below the room that a thread gets (bench/polyhedron_fast.md). Not a bound for
-  // surfaces without volume: their pairs are all near.
+  // each, 160 bytes of 256 and 768 of 16, in all below the room that a thread gets (bench/polyhedron_fast.md).
   const std::uint64_t tasks =
-      threads_ * (FarField::bytes(std::min<std::uint64_t>(points, task_points), largest_tree_leaf, settings.order) +
+      threads_ * (FarSums::bytes(std::min<std::uint64_t>(points, task_points), largest_tree_leaf, settings.order) +
                   std::min<std::uint64_t>(points, task_points) * 200 + (1 << 20));
   const std::uint64_t results = points * (8 + 24 + 8 + (second() ? 49 : 0) + (problem_.guarantee ? 8 : 0));
   const std::uint64_t tree = PlaceTree::bytes(points, largest_tree_leaf) + points * sizeof(Vec3);
@@ -166,38 +165,38 @@ PolyhedronValues FastPolyhedron::at(std::span<const Vec3> points, Monitor& monit
     throw Error(Fault::too_large, "more than 2^32 points at once: ask for them in parts");
   const FlushDenormals flush;
   const plan::FastSettings settings = plan::fast_settings(problem_);
-  const std::shared_ptr<const Body> body = this->body(settings, monitor);
-  const Vec3& origin = body->sources.origin();
+  const std::shared_ptr<const Prepared> prepared = prepare(settings, monitor);
+  const Vec3& origin = prepared->sources.origin();
 
   const std::size_t count = points.size();
   PolyhedronValues values = plan::polyhedron_values(problem_, count);
-  const double volume = std::abs(body->sources.volume()), radius = std::cbrt(0.75 * std::numbers::inv_pi * volume);
+  const double volume = std::abs(prepared->sources.volume()), radius = std::cbrt(0.75 * std::numbers::inv_pi * volume);
   const double weight = volume > 0 ? volume / (radius * radius) : 0;
   const plan::PairTolerance tolerance{settings.tau * weight, radius, plan::largest_tree_leaf};
-  const double far_distance = plan::far_distance(body->sources, tolerance);
+  const double far_distance = plan::far_distance(prepared->sources, tolerance);
 
   std::vector<std::uint32_t> near, far;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 from = points[i] / body->unit - origin;
+    const Vec3 from = points[i] / prepared->unit - origin;
     if (from.cwiseAbs().maxCoeff() >= farthest)
-      set_farthest(*body, from, i, values);
+      set_farthest(*prepared, from, i, values);
     else
       (from.norm() < far_distance ? near : far).push_back(std::uint32_t(i));
   }
-  sum_far(*body, points, far, monitor, values);
+  sum_far(*prepared, points, far, monitor, values);
   double setup = seconds_since(start), near_faces = 0;
   if (!near.empty()) {
     plan::PlaceTree targets(
-        near.size(), [&](std::size_t i) { return Vec3(points[near[i]] / body->unit); }, plan::largest_tree_leaf,
+        near.size(), [&](std::size_t i) { return Vec3(points[near[i]] / prepared->unit); }, plan::largest_tree_leaf,
         threads_);
     std::vector<Vec3> sorted(near.size());
     for (std::size_t i = 0; i < near.size(); ++i) {
       targets.order[i] = near[targets.order[i]];
-      sorted[i] = points[targets.order[i]] / body->unit;
+      sorted[i] = points[targets.order[i]] / prepared->unit;
     }
     near = {};
     setup = seconds_since(start);
-    const Call call{*body,
+    const Call call{*prepared,
                     targets,
                     sorted,
                     targets.order,
@@ -211,7 +210,7 @@ PolyhedronValues FastPolyhedron::at(std::span<const Vec3> points, Monitor& monit
     parallel_for(threads_, tasks.size(), [&](std::size_t i, unsigned thread) {
       const FlushDenormals here;
       check_stop(monitor);
-      if (!workers[thread]) workers[thread] = std::make_unique<Worker>(*body);
+      if (!workers[thread]) workers[thread] = std::make_unique<Worker>(*prepared);
       sum_task(call, tasks[i], *workers[thread], values);
       const std::size_t now = ++done;
       if (thread == 0) monitor.progress("polyhedron", double(now) / double(tasks.size()));
@@ -234,7 +233,7 @@ PolyhedronValues FastPolyhedron::at(std::span<const Vec3> points, Monitor& monit
 void FastPolyhedron::find_pairs(const Call& call, std::uint32_t task, Worker& worker) const {
   plan::PairTolerance tolerance = call.tolerance;
   const auto find = [&] {
-    plan::find_pairs(call.body.sources, call.targets, call.points, task, tolerance, worker.pairs);
+    plan::find_pairs(call.prepared.sources, call.targets, call.points, task, tolerance, worker.pairs);
     return worker.pairs.largest_bound / call.limit;
   };
   double part = find();
@@ -272,23 +271,23 @@ void FastPolyhedron::sum_leaf(const Call& call, std::uint32_t leaf, Worker& work
   worker.far.add_leaf(call.targets, worker.pairs, leaf, points, count, second(), sums);
   worker.patches.clear();
   for (const plan::CellPair& pair : plan::TaskPairs::of_leaf(worker.pairs.near, leaf))
-    worker.patches.push_back(call.body.sources.leaf_number(pair.source));
-  const PolyhedronTerms terms{second(), call.digits, call.body.touching};
+    worker.patches.push_back(call.prepared.sources.leaf_number(pair.source));
+  const PolyhedronTerms terms{second(), call.digits, call.prepared.touching};
   if (call.single)
-    sum_patches(call.body.singles, worker.patches, points, count, terms, worker.scratch, sums);
+    sum_patches(call.prepared.singles, worker.patches, points, count, terms, worker.scratch, sums);
   else
-    sum_patches(call.body.doubles, worker.patches, points, count, terms, worker.scratch, sums);
+    sum_patches(call.prepared.doubles, worker.patches, points, count, terms, worker.scratch, sums);
 
   const double bound = worker.pairs.bound[leaf - worker.pairs.first];
   for (std::size_t i = 0; i < cell.count(); ++i) {
     const std::uint32_t to = call.origin[cell.begin + i];
-    plan::store_sums(problem_, call.body.unit, sums + i, count, to, values);
-    if (problem_.guarantee) values.bound[to] = call.body.unit * bound;
+    plan::store_sums(problem_, call.prepared.unit, sums + i, count, to, values);
+    if (problem_.guarantee) values.bound[to] = call.prepared.unit * bound;
   }
 }
 
 // Of all faces together.
-void FastPolyhedron::sum_far(const Body& body, std::span<const Vec3> points, std::span<const std::uint32_t> far,
+void FastPolyhedron::sum_far(const Prepared& prepared, std::span<const Vec3> points, std::span<const std::uint32_t> far,
                              Monitor& monitor, PolyhedronValues& values) const {
   constexpr std::size_t block = 64;
   parallel_for(threads_, (far.size() + block - 1) / block, [&](std::size_t task, unsigned) {
@@ -298,13 +297,14 @@ void FastPolyhedron::sum_far(const Body& body, std::span<const Vec3> points, std
     alignas(64) double places[3 * block], sums[Rows::second * block] = {};
     for (std::size_t i = 0; i < block; ++i)
       for (std::size_t k = 0; k < 3; ++k)
-        places[k * block + i] = points[own[std::min(i, own.size() - 1)]][Eigen::Index(k)] / body.unit;
-    FarField field(body.sources, body.translations);
+        places[k * block + i] = points[own[std::min(i, own.size() - 1)]][Eigen::Index(k)] / prepared.unit;
+    FarSums field(prepared.sources, prepared.translations);
     field.add_multipoles(0, places, block, second(), sums);
     for (std::size_t i = 0; i < own.size(); ++i) {
-      plan::store_sums(problem_, body.unit, sums + i, block, own[i], values);
-      const double distance = (points[own[i]] / body.unit - body.sources.origin()).norm();
-      if (problem_.guarantee) values.bound[own[i]] = body.unit * plan::multipole_bound(body.sources, 0, distance);
+      plan::store_sums(problem_, prepared.unit, sums + i, block, own[i], values);
+      const double distance = (points[own[i]] / prepared.unit - prepared.sources.origin()).norm();
+      if (problem_.guarantee)
+        values.bound[own[i]] = prepared.unit * plan::multipole_bound(prepared.sources, 0, distance);
     }
   });
 }

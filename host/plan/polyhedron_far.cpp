@@ -72,7 +72,7 @@ void derive_multipoles(int order, const double* multipole, std::size_t sets, dou
   derive(order, multipole, sets, false, derived);
 }
 
-void FarField::gather(const PlaceTree& targets, const TaskPairs& pairs) {
+void FarSums::gather(const PlaceTree& targets, const TaskPairs& pairs) {
   const std::span<const TreeCell> to = targets.cells, from = sources_->cells();
   const int order = sources_->order();
   first_ = pairs.first;
@@ -101,8 +101,8 @@ void FarField::gather(const PlaceTree& targets, const TaskPairs& pairs) {
   }
 }
 
-void FarField::add(int order, const double* points, std::size_t count, const double* expanded, const double* factors,
-                   bool second, double* sums) {
+void FarSums::add(int order, const double* points, std::size_t count, const double* expanded, const double* factors,
+                  bool second, double* sums) {
   const std::size_t sets = second ? 10 : 5;
   values_.resize(sets * count);
   sum_harmonics(order, sets, expanded, &seen_.front().values[0], count, values_.data());
@@ -128,15 +128,15 @@ void FarField::add(int order, const double* points, std::size_t count, const dou
   }
 }
 
-void FarField::see_from(const Vec3& centre, const double* points, std::size_t count) {
+void FarSums::see_from(const Vec3& centre, const double* points, std::size_t count) {
   seen_.resize((4 * count + 7) / 8);
   double* seen = seen_.front().values;
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < count; ++i) seen[k * count + i] = points[k * count + i] - centre[Eigen::Index(k)];
 }
 
-void FarField::add_leaf(const PlaceTree& targets, const TaskPairs& pairs, std::uint32_t leaf, const double* points,
-                        std::size_t count, bool second, double* sums) {
+void FarSums::add_leaf(const PlaceTree& targets, const TaskPairs& pairs, std::uint32_t leaf, const double* points,
+                       std::size_t count, bool second, double* sums) {
   const int order = sources_->order();
   const std::size_t sets = second ? 10 : 5;
   derived_.resize(sets * harmonics(order + 1));
@@ -147,8 +147,7 @@ void FarField::add_leaf(const PlaceTree& targets, const TaskPairs& pairs, std::u
     add_multipoles(pair.source, points, count, second, sums);
 }
 
-void FarField::add_multipoles(std::uint32_t source, const double* points, std::size_t count, bool second,
-                              double* sums) {
+void FarSums::add_multipoles(std::uint32_t source, const double* points, std::size_t count, bool second, double* sums) {
   const int order = sources_->order();
   const std::size_t sets = second ? 10 : 5;
   derived_.resize(sets * harmonics(order + 1));
@@ -164,7 +163,7 @@ void FarField::add_multipoles(std::uint32_t source, const double* points, std::s
   add(order + 1, points, count, derived_.data(), inverse, second, sums);
 }
 
-std::uint64_t FarField::bytes(std::uint64_t points, std::uint32_t largest_leaf, int order) {
+std::uint64_t FarSums::bytes(std::uint64_t points, std::uint32_t largest_leaf, int order) {
   return PlaceTree::cell_count(points, largest_leaf) * densities * harmonics(order) * sizeof(double) +
          Translations::Room::bytes(order) + 20 * harmonics(order + 1) * sizeof(double) + (1 << 16);
 }

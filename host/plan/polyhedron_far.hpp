@@ -12,9 +12,9 @@
 namespace cowgpu::plan {
 
 /// Local expansions of one task's cells, and what comes of them at the points of its leaves. One for each thread.
-class FarField {
+class FarSums {
 public:
-  FarField(const PolyhedronSources& sources, const Translations& translations)
+  FarSums(const PolyhedronSources& sources, const Translations& translations)
       : sources_(&sources), translations_(&translations), room_(translations.order()) {}
 
   /// Multipoles to the locals of the task's cells, and these down to its leaves.

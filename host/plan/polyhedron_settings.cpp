@@ -49,7 +49,8 @@ FastSettings fast_settings(const PolyhedronProblem& problem) {
 }
 
 bool fast_sum_pays(const PolyhedronProblem& problem, std::uint64_t points) {
-  if (problem.tolerance == 0) return false;
+  // Without volume no error is small enough, so that all pairs would be near.
+  if (problem.tolerance == 0 || !std::isfinite(thinness(problem))) return false;
   // In the time of one face at one point in the direct sum, with AVX2, as bench/polyhedron_fast.md has it: 1e-6, 1e-9 and 1e-12
   // were measured. Where points lie apart a point's share grows with the faces between two of them.
   double digits = std::max(6.0, -std::log10(problem.tolerance));

@@ -83,11 +83,6 @@ std::string places_text(const SurfaceGravityPlan& plan) {
   return fmt::format("{} points of {}", plan.places, plan.request.points_name);
 }
 
-std::unique_ptr<Backend> summing(const SurfaceGravityPlan& plan, const Backend& asked) {
-  const SurfaceGravityRequest& r = plan.request;
-  return fast_sum_backend(plan.body(), r.tolerance, Derivatives::first, plan.places, asked, r.threads);
-}
-
 BodyFieldProblem field_problem(const SurfaceGravityRequest& r) {
   return {Derivatives::first, FieldSum::device, r.threads, r.tolerance, r.guarantee};
 }
@@ -128,9 +123,12 @@ std::vector<std::pair<std::string, std::string>> facts_of(const SurfaceGravityRe
 
 } // namespace
 
+std::unique_ptr<Backend> SurfaceGravityPlan::own_backend(const Backend& asked) const {
+  return fast_sum_backend(body(), request.tolerance, Derivatives::first, places, asked, request.threads);
+}
+
 MemoryNeed SurfaceGravityPlan::memory(const Backend& backend) const {
-  const auto cpu = summing(*this, backend);
-  MemoryNeed need = BodyField(body(), field_problem(request), cpu ? *cpu : backend).memory(places);
+  MemoryNeed need = BodyField(body(), field_problem(request), backend).memory(places);
   // Places, normals and areas, gravity as vectors beside the columns, the mesh once more in the result.
   need.host +=
       places * (7 * sizeof(double) + 2 * sizeof(Vec3) + 8 * surface_gravity_numbers(request.place, request.guarantee));
@@ -169,9 +167,9 @@ SurfaceGravityPlan plan_surface_gravity(SurfaceGravityRequest request, Monitor& 
 }
 
 SurfaceGravityResult surface_gravity(SurfaceGravityPlan plan, Backend& asked, Monitor& monitor) {
-  check_memory(plan.memory(asked), asked, "take a coarser mesh, or fewer points");
-  const auto cpu = summing(plan, asked);
+  const auto cpu = plan.own_backend(asked);
   const Backend& backend = cpu ? *cpu : asked;
+  check_memory(plan.memory(backend), backend, "take a coarser mesh, or fewer points");
   if (cpu) plan.loaded.notes.push_back(fast_sum_note(asked));
   SurfaceGravityResult s;
   s.subject = subject(plan.loaded);

@@ -8,6 +8,7 @@
 #include "host/units.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,7 +45,10 @@ struct SurfaceGravityPlan {
 
   const Body& body() const { return *loaded.mesh; }
 
-  /// What surface_gravity() allocates at most, and the caller beside it.
+  /// As fast_sum_backend() has it.
+  std::unique_ptr<Backend> own_backend(const Backend& asked) const;
+
+  /// What surface_gravity() allocates at most, and the caller beside it, on the backend that sums.
   MemoryNeed memory(const Backend& backend) const;
 };
 
