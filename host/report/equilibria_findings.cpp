@@ -107,9 +107,9 @@ void add_notes(const EquilibriaResult& s, Findings& found) {
                                       e.places));
   if (e.undecided_cells > 0)
     found.notes.push_back(
-        fmt::format("{} of the places looked at, in {} group{}, are not decided at the smallest size of a cell: an "
-                    "equilibrium may be missing there; --smallest refines further",
-                    e.undecided_cells, e.undecided.size(), e.undecided.size() == 1 ? "" : "s"));
+        fmt::format("{} cells, in {} group{}, are not decided{}: an equilibrium may be missing there{}",
+                    e.undecided_cells, e.undecided.size(), e.undecided.size() == 1 ? "" : "s",
+                    e.exhausted ? "" : " at their smallest size", e.exhausted ? "" : "; --smallest refines further"));
   if (std::any_of(e.undecided.begin(), e.undecided.end(), [](const UndecidedPlace& p) { return p.ring; }))
     found.notes.push_back(
         "a group of them goes round the axis: the body is all but symmetric about it, and its equilibria "
