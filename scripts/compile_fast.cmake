@@ -28,7 +28,6 @@ function(cowgpu_compile_together target)
     endforeach()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  target_compile_options(${target} PRIVATE -Wno-shadow) # of one file's names and another's parameters it says nothing
 endfunction()
 
 # cowgpu_precompile(TARGET HEADER) or cowgpu_precompile(TARGET REUSE_FROM OTHER), where both are compiled with the same options.
