@@ -11,6 +11,7 @@
 #include "host/mesh/subdivide.hpp"
 #include "host/plan/polyhedron_settings.hpp"
 #include "host/reference/polyhedron.hpp"
+#include "host/report/result.hpp"
 
 #include "bench/command_line.hpp"
 #include <fmt/format.h>
@@ -31,17 +32,21 @@ struct Options {
   int splits = 2, runs = 3;
   double tolerance = 0;
   unsigned threads = 0;
-  bool guarantee = false, tensor = false, everywhere = false, crossover = false, lists = false, json = false;
+  bool guarantee = false, tensor = false, device = false, everywhere = false, crossover = false, lists = false,
+       json = false;
 };
 
 // ESA's polyhedral-gravity-model 3.3.1 (J. Schuhmacher et al., 2024) as shipped, V, gradient and second derivatives of 5,520
 // faces at 1,000 points outside, on two threads of a Zen 5 with AVX-512: faces times points a second.
 constexpr double peer_rate = 6.80e6;
 
+// Double-precision instructions of a face at a point on a GPU, as bench/polyhedron.md counts them.
+constexpr double face_operations = 150;
+
 // One row: what is asked for of all centroids.
 struct Way {
   double tolerance;
-  bool guarantee, tensor;
+  bool guarantee, tensor, device;
 };
 
 // Parts of the tolerance: of the gradient over v/R^2, of V over v/R.
@@ -66,21 +71,29 @@ public:
     for (const Face& f : mesh_.faces)
       points_.push_back((mesh_.vertices[f[0]] + mesh_.vertices[f[1]] + mesh_.vertices[f[2]]) / 3);
     find_truth(whole);
+    if (options_.device) {
+      gpu_ = make_gpu_backend({});
+      say("device: {}\n", device_line(gpu_->facts()));
+    }
     say("{}, split {} times: {} faces at their centroids, median of {} runs with set-up\n", whole.name, options_.splits,
         mesh_.faces.size(), options_.runs);
     say("{:<16} {:>8} {:>9} {:>7} {:>10} {:>8} {:>7} {:>7} {:>6} {:>8} {:>8}\n", "tolerance", "wall s", "core s",
         "us a pt", "as direct", "x ESA", "g", "V", "bound", "near", "MB of");
     for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
       if (options_.tolerance != 0 && options_.tolerance != tolerance) continue;
-      time({tolerance, false, false});
-      if (options_.guarantee) time({tolerance, true, false});
-      if (options_.tensor) time({tolerance, false, true});
+      time({tolerance, false, false, false});
+      if (options_.guarantee) time({tolerance, true, false, false});
+      if (options_.tensor) time({tolerance, false, true, false});
+      if (gpu_) time({tolerance, false, false, true});
     }
     say("us a pt: of a core; as direct: faces times points over wall time, in millions a second; g, V: largest errors, "
         "and\n"
         "bound: the largest, in parts of the tolerance; near: faces whose closed form a point takes; MB: most that "
         "was\n"
-        "resident, of what memory() says\n");
+        "resident, of what memory() says\n"
+        "operations a point: about {:.0f} double-precision instructions on a GPU for a near face, and the "
+        "translations' multiply-adds\n",
+        face_operations);
     return finish();
   }
 
@@ -143,6 +156,7 @@ private:
     const std::string name = fmt::format("{:.0e}{}", way.tolerance,
                                          way.guarantee ? ", proven"
                                          : way.tensor  ? ", tensor"
+                                         : way.device  ? ", device"
                                                        : "");
     std::vector<double> seconds, used;
     RunReport report;
@@ -151,7 +165,7 @@ private:
     for (int run = 0; run < options_.runs; ++run) {
       Resident resident;
       const double before = processor_seconds();
-      const auto prepared = cpu::fast_polyhedron(problem, options_.threads);
+      const auto prepared = way.device ? gpu_->polyhedron(problem) : cpu::fast_polyhedron(problem, options_.threads);
       const PolyhedronValues found = prepared->at(points_, silent_monitor(), &report);
       used.push_back(processor_seconds() - before);
       seconds.push_back(report.seconds);
@@ -165,6 +179,11 @@ private:
     say("{:<16} {:>8.3f} {:>9.3f} {:>7.1f} {:>10.0f} {:>8.0f} {:>7.3f} {:>7.3f} {:>6.2f} {:>8.0f} {:>4.0f} of {:.0f}\n",
         name, wall, core, 1e6 * core / count, rate / 1e6, rate / peer_rate, worst.gradient, worst.value, worst.bound,
         report.elements / count, peak / 1e6, need / 1e6);
+    for (const KernelTime& kernel : report.kernels)
+      say("  {:<20} {:>8} dispatches, {:.3f} s\n", kernel.kernel, kernel.dispatches, kernel.seconds);
+    if (way.device)
+      say("  operations a point: {:.0f} near by, {:.0f} of {:.2f} pairs of cells\n",
+          face_operations * report.elements / count, report.multiply_adds / count, double(report.pairs) / count);
     check(name + ": gradient", worst.gradient * way.tolerance, way.tolerance);
     check(name + ": V", worst.value * way.tolerance, way.tolerance);
     if (way.guarantee) check(name + ": largest bound", worst.bound * way.tolerance, way.tolerance);
@@ -186,6 +205,7 @@ private:
   }
 
   Options options_;
+  std::unique_ptr<Backend> gpu_;
   RawMesh mesh_;
   double volume_ = 0, radius_ = 0;
   std::vector<Vec3> points_, gradient_;
@@ -207,6 +227,7 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads, "0: all");
   app.add_flag("--guarantee", options.guarantee, "With proven bounds too");
   app.add_flag("--tensor", options.tensor, "With second derivatives too");
+  app.add_flag("--device", options.device, "The Vulkan path too");
   app.add_flag("--everywhere", options.everywhere,
                "Errors at all points, against the direct sum of the mesh before it is split");
   app.add_flag("--crossover", options.crossover, "Times the direct sum against the fast one at small sizes instead");

@@ -86,6 +86,7 @@ struct GpuOptions {
   std::uint32_t transform_pairs = 0;   ///< pairs of rings a workgroup works on; a multiple of the last, at most 8192
   std::uint64_t transform_binding = 0; ///< bytes a binding spans at most
   std::uint32_t private_ring_points = 4096; ///< longest ring transformed without buffers between the passes
+  bool translations = false; ///< those of the fast sum of polyhedra on software devices too, and not on the host
 };
 
 /// The Vulkan path. Throws Error(bad_argument, no_loader, no_device, no_fp64, device_failed).

@@ -61,7 +61,7 @@ public:
   /// At points in mesh coordinates. Throws Error(bad_argument) for points that are not finite and for a tolerance out of range,
   /// too_large, device_failed, device_lost, interrupted. The same points on the same device give the same bits, with any number
   /// of threads. Of the report, seconds, setup_seconds, elements (pairs of a face and a point), full_elements (faces times
-  /// points) and kernels are set.
+  /// points) and kernels are set, by the fast sum pairs of cells and their multiply_adds too.
   virtual PolyhedronValues at(std::span<const Vec3> points, Monitor& monitor, RunReport* report = nullptr) const = 0;
 };
 

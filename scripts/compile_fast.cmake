@@ -38,5 +38,6 @@ function(cowgpu_precompile target)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
   # Of precompiled headers GCC 12 forgets that they are the system's, and warns about std::string and Eigen in them.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds>)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds
+                                           -Wno-stringop-overflow -Wno-stringop-overread>)
 endfunction()

@@ -147,7 +147,8 @@ Side side_between(Corner a, Corner b, double edge) {
 void main() {
   const uint lane = gl_LocalInvocationID.x;
   const uvec4 own = work[push.first + gl_WorkGroupID.x];
-  const uint group = own.x, from = group * 3 * POLYHEDRON_LANES + lane;
+  if (2 * lane >= own.x >> POLYHEDRON_COUNT_SHIFT) return;
+  const uint group = own.x & ((1u << POLYHEDRON_COUNT_SHIFT) - 1u), from = group * 3 * POLYHEDRON_LANES + lane;
   const uint rows = SECOND != 0 ? POLYHEDRON_ROWS_SECOND : POLYHEDRON_ROWS_FIRST;
   const uint to = group * rows * POLYHEDRON_LANES + lane;
   const V x = points[from], y = points[from + POLYHEDRON_LANES], z = points[from + 2 * POLYHEDRON_LANES];

@@ -5,7 +5,8 @@
 
 #define POLYHEDRON_STEPS 0  // texels of two doubles: [step][POLYHEDRON_STEP_TEXELS]
 #define POLYHEDRON_RANGES 1 // [range]: first step and the step behind the last
-#define POLYHEDRON_WORK 2   // [workgroup of all dispatches]: group, its first range, its first step, how many steps
+#define POLYHEDRON_WORK                                                                                                \
+  2 // [workgroup of all dispatches]: group and how many of its points, its first range, its first step, how many steps
 #define POLYHEDRON_POINTS 3 // [group][x, y, z][lane]: pairs of points
 #define POLYHEDRON_SUMS 4   // [group][row][lane]: pairs of points; added to
 #define POLYHEDRON_SEEN 5   // [group][lane]: steps that were run; added to
@@ -19,6 +20,7 @@
 
 #define POLYHEDRON_LANES 32 // of a workgroup
 #define POLYHEDRON_GROUP 64 // points of a workgroup
+#define POLYHEDRON_COUNT_SHIFT 24 // the group's bits below the number of its points
 #define POLYHEDRON_SHORT 64 // steps of a short sum
 #define POLYHEDRON_STEP_TEXELS 10
 #define POLYHEDRON_ROWS_FIRST 5   // V twice, -grad V, w

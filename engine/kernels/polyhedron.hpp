@@ -44,10 +44,10 @@ public:
   static std::uint64_t step_bytes(std::uint64_t steps) { return 8 * polyhedron_numbers * steps; }
   static std::uint64_t sum_bytes(std::uint64_t groups, std::uint64_t ranges, bool second);
 
-  /// points[group][3][64] to sums[group][rows][64]. `near` is summed everywhere; `far` where its points are at least 2.6 edges
+  /// points[group][3][64], of which the first counts[group] are asked for, to sums[group][rows][64]. `near` is summed everywhere; `far` where its points are at least 2.6 edges
   /// away from its faces' edges. In dispatches of at most 1e9 pairs of a step and a point. Throws Error(stopped), Error(cut_short).
-  void sum(std::span<const double> points, const PolyhedronList& near, const PolyhedronList& far,
-           std::span<double> sums, const Hook& hook);
+  void sum(std::span<const double> points, std::span<const std::uint32_t> counts, const PolyhedronList& near,
+           const PolyhedronList& far, std::span<double> sums, const Hook& hook);
 
 private:
   Device& device_;

@@ -114,10 +114,8 @@ void run(const Options& options, const Common& common) {
   SurfaceGravityPlan plan = plan_surface_gravity(std::move(request), monitor);
   plan.extra_bytes = file_memory(options, plan);
   if (options.dry_run) {
-    const auto own = plan.own_backend(*backend);
-    const Backend& summing = own ? *own : *backend;
-    check_memory(plan.memory(summing), summing, "take a coarser mesh, or fewer points");
-    write_plan(plan, summing);
+    check_memory(plan.memory(*backend), *backend, "take a coarser mesh, or fewer points");
+    write_plan(plan, *backend);
     return;
   }
   const SurfaceGravityResult result = surface_gravity(std::move(plan), *backend, monitor);

@@ -7,6 +7,7 @@
 #include "host/cpu/potential.hpp"
 #include "host/parallel.hpp"
 #include "host/plan/polyhedron_call.hpp"
+#include "host/plan/polyhedron_fast.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -126,7 +127,8 @@ private:
 std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem, unsigned threads) {
   auto direct = std::make_unique<CpuPolyhedron>(problem, threads);
   if (problem.tolerance == 0) return direct;
-  return faster_polyhedron(problem, threads, std::move(direct));
+  return plan::faster_polyhedron(problem, fast_polyhedron(problem, threads), std::move(direct),
+                                 [=](std::uint64_t points) { return plan::fast_sum_pays(problem, points); });
 }
 
 } // namespace cowgpu::cpu

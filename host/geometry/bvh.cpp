@@ -14,22 +14,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int bins = 16;
 constexpr double edge_margin = 1e-12;
 
-struct Bounds {
-  Vec3 low = Vec3::Constant(infinity), high = Vec3::Constant(-infinity);
-  void add(const Vec3& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  void add(const Bounds& b) {
-    low = low.cwiseMin(b.low);
-    high = high.cwiseMax(b.high);
-  }
-  double half_area() const {
-    const Vec3 d = high - low;
-    return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
-  }
-};
-
 /// Closest point of the triangle (a, a + ab, a + ac) to p.
 Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& ab, const Vec3& ac) {
   const Vec3 ap = p - a;
@@ -59,6 +43,22 @@ double box_distance2(const Vec3& low, const Vec3& high, const Vec3& p) {
 } // namespace
 
 struct Bvh::Builder {
+  struct Bounds {
+    Vec3 low = Vec3::Constant(infinity), high = Vec3::Constant(-infinity);
+    void add(const Vec3& p) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    void add(const Bounds& b) {
+      low = low.cwiseMin(b.low);
+      high = high.cwiseMax(b.high);
+    }
+    double half_area() const {
+      const Vec3 d = high - low;
+      return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
+    }
+  };
+
   Bvh& tree;
   std::vector<Bounds> bounds;
   std::vector<Vec3> centres;
@@ -144,7 +144,7 @@ struct Bvh::Builder {
 Bvh::Bvh(std::span<const Vec3> vertices, std::span<const Face> faces) : faces_(faces.size()) {
   if (faces.empty()) return;
   std::iota(faces_.begin(), faces_.end(), 0U);
-  Builder builder{*this, std::vector<Bounds>(faces.size()), std::vector<Vec3>(faces.size())};
+  Builder builder{*this, std::vector<Builder::Bounds>(faces.size()), std::vector<Vec3>(faces.size())};
   for (std::size_t f = 0; f < faces.size(); ++f) {
     for (const std::uint32_t v : faces[f]) builder.bounds[f].add(vertices[v]);
     builder.centres[f] = builder.bounds[f].low / 2 + builder.bounds[f].high / 2;

@@ -38,7 +38,7 @@ public:
       : gpu_(std::move(gpu)), facts_(facts_of(gpu_->facts())),
         shape_(engine::moments_shape(gpu_->facts(), gpu::shape_from(options))),
         transform_shape_(engine::sphere_transform_shape(gpu_->facts(), gpu::transform_shape_from(options))),
-        iteration_budget_(options.iteration_budget) {}
+        iteration_budget_(options.iteration_budget), translations_(options.translations) {}
 
   const DeviceFacts& facts() const override { return facts_; }
 
@@ -69,7 +69,7 @@ public:
   }
 
   std::unique_ptr<PreparedPolyhedron> polyhedron(const PolyhedronProblem& problem) const override {
-    return gpu::polyhedron(gpu_, shape_, iteration_budget_, problem);
+    return gpu::polyhedron(gpu_, {shape_, iteration_budget_, translations_}, problem);
   }
 
   Image render(const RenderScene& scene, Monitor& monitor) override {
@@ -88,6 +88,7 @@ private:
   engine::MomentsShape shape_;
   engine::SphereTransformShape transform_shape_;
   std::uint32_t iteration_budget_;
+  bool translations_;
 };
 
 } // namespace

@@ -4,8 +4,10 @@
 #include "host/clock.hpp"
 #include "host/gpu/errors.hpp"
 #include "host/gpu/moments.hpp"
+#include "host/gpu/polyhedron_fast.hpp"
 #include "host/gpu/potential.hpp"
 #include "host/plan/polyhedron_call.hpp"
+#include "host/plan/polyhedron_fast.hpp"
 #include "host/plan/polyhedron_strips.hpp"
 #include "host/plan/potential.hpp"
 
@@ -33,9 +35,8 @@ struct Prepared {
 
 class GpuPolyhedron final : public PreparedPolyhedron {
 public:
-  GpuPolyhedron(std::shared_ptr<engine::Gpu> gpu, const engine::MomentsShape& shape, std::uint32_t iteration_budget,
-                const PolyhedronProblem& problem)
-      : gpu_(std::move(gpu)), shape_(shape), iteration_budget_(iteration_budget), problem_(problem) {}
+  GpuPolyhedron(std::shared_ptr<engine::Gpu> gpu, const PolyhedronLayout& layout, const PolyhedronProblem& problem)
+      : gpu_(std::move(gpu)), layout_(layout), problem_(problem) {}
 
   MemoryNeed memory(std::uint64_t points) const override {
     const std::uint64_t faces = problem_.faces.size(), patches = faces / plan::direct_patch + 1;
@@ -43,7 +44,7 @@ public:
     moments.vertices = problem_.vertices;
     moments.faces = problem_.faces;
     moments.lmax = plan::far_degree;
-    const MemoryNeed far = gpu::moments(gpu_, shape_, moments)->memory();
+    const MemoryNeed far = gpu::moments(gpu_, layout_.moments, moments)->memory();
     const std::uint64_t groups = std::min<std::uint64_t>(points / group + 1, batch_groups);
     const std::uint64_t sums = engine::Polyhedron::sum_bytes(groups, groups * (patches + 2), second());
     const std::uint64_t steps = plan::PolyhedronStrips::bytes(faces);
@@ -72,7 +73,7 @@ private:
     made.strips = plan::polyhedron_strips(patches);
     made.device = std::make_unique<engine::Polyhedron>(
         gpu_->device(), engine::PolyhedronInput{made.strips.steps, second(), made.surface.touching / made.surface.unit,
-                                                iteration_budget_});
+                                                layout_.iteration_budget});
     made.strips.steps = {};
     prepared_.emplace(std::move(made));
   }
@@ -116,15 +117,13 @@ private:
     for (std::size_t i = 0; i < groups * group; ++i)
       for (std::size_t k = 0; k < 3; ++k)
         columns[(i / group * 3 + k) * group + i % group] = places[std::min(i, places.size() - 1)][Eigen::Index(k)];
-    prepared_->device->sum(columns, {lists.near.ranges, lists.near.starts}, {lists.far.ranges, lists.far.starts}, sums,
-                           hook);
+    std::vector<std::uint32_t> counts(groups, group);
+    counts.back() = std::uint32_t(batch.size() - (groups - 1) * group);
+    prepared_->device->sum(columns, counts, {lists.near.ranges, lists.near.starts},
+                           {lists.far.ranges, lists.far.starts}, sums, hook);
     for (std::size_t i = 0; i < batch.size(); ++i) {
       double own[Rows::second];
-      const double* from = &sums[i / group * rows * group + i % group];
-      for (std::size_t r = 0; r < rows; ++r) own[r] = from[r * group];
-      own[Rows::value] /= 2;
-      for (std::size_t k = 0; k < 3; ++k) own[Rows::gradient + k] *= -1;
-      own[Rows::winding] *= 0.25 * std::numbers::inv_pi;
+      take_sums(&sums[i / group * rows * group + i % group], group, rows, own, 1);
       plan::store_sums(problem_, unit, own, 1, batch[i], values);
     }
   }
@@ -132,15 +131,15 @@ private:
   void add_far(std::span<const Vec3> points, std::span<const std::uint32_t> far, Monitor& monitor,
                PolyhedronValues& values) const {
     if (!prepared_->moments)
-      prepared_->moments = gpu::moments(gpu_, shape_, plan::far_moments(problem_, prepared_->surface))->run(monitor);
+      prepared_->moments =
+          gpu::moments(gpu_, layout_.moments, plan::far_moments(problem_, prepared_->surface))->run(monitor);
     const PotentialProblem series{*prepared_->moments, plan::far_degree, problem_.derivatives};
     const std::vector<Vec3> places = plan::far_places(prepared_->surface, points, far);
-    plan::store_far(exterior_potential(gpu_, iteration_budget_, series)->at(places, monitor), far, values);
+    plan::store_far(exterior_potential(gpu_, layout_.iteration_budget, series)->at(places, monitor), far, values);
   }
 
   std::shared_ptr<engine::Gpu> gpu_;
-  engine::MomentsShape shape_;
-  std::uint32_t iteration_budget_;
+  PolyhedronLayout layout_;
   PolyhedronProblem problem_;
   mutable std::mutex mutex_;
   mutable std::optional<Prepared> prepared_;
@@ -148,9 +147,23 @@ private:
 
 } // namespace
 
-std::unique_ptr<PreparedPolyhedron> polyhedron(std::shared_ptr<engine::Gpu> gpu, const engine::MomentsShape& shape,
-                                               std::uint32_t iteration_budget, const PolyhedronProblem& problem) {
-  return std::make_unique<GpuPolyhedron>(std::move(gpu), shape, iteration_budget, problem);
+void take_sums(const double* from, std::size_t from_stride, std::size_t rows, double* to, std::size_t to_stride) {
+  for (std::size_t r = 0; r < rows; ++r) to[r * to_stride] = from[r * from_stride];
+  to[Rows::value * to_stride] /= 2;
+  for (std::size_t k = 0; k < 3; ++k) to[(Rows::gradient + k) * to_stride] *= -1;
+  to[Rows::winding * to_stride] *= 0.25 * std::numbers::inv_pi;
+}
+
+std::unique_ptr<PreparedPolyhedron> polyhedron(std::shared_ptr<engine::Gpu> gpu, const PolyhedronLayout& layout,
+                                               const PolyhedronProblem& problem) {
+  auto direct = std::make_unique<GpuPolyhedron>(gpu, layout, problem);
+  if (problem.tolerance == 0) return direct;
+  // A GPU ends so many pairs in one dispatch before the host has made its trees; software devices are slower than the host.
+  const double direct_pairs = gpu->facts().type == "software" ? 0 : 1e9;
+  auto fast = fast_polyhedron(std::move(gpu), layout, problem);
+  return plan::faster_polyhedron(problem, std::move(fast), std::move(direct), [=](std::uint64_t points) {
+    return double(points) * double(problem.faces.size()) > direct_pairs && plan::fast_sum_pays(problem, points);
+  });
 }
 
 } // namespace cowgpu::gpu

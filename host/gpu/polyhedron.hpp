@@ -9,8 +9,18 @@
 
 namespace cowgpu::gpu {
 
-/// Keeps the device open. `shape`: of the moments that points far away need. `iteration_budget`: GpuOptions::iteration_budget.
-std::unique_ptr<PreparedPolyhedron> polyhedron(std::shared_ptr<engine::Gpu> gpu, const engine::MomentsShape& shape,
-                                               std::uint32_t iteration_budget, const PolyhedronProblem& problem);
+/// A point's sums of the device, `from_stride` apart, to those of PolyhedronRows.
+void take_sums(const double* from, std::size_t from_stride, std::size_t rows, double* to, std::size_t to_stride);
+
+/// How a device sums.
+struct PolyhedronLayout {
+  engine::MomentsShape moments;           ///< of those that points far away need
+  std::uint32_t iteration_budget = 60000; ///< GpuOptions::iteration_budget
+  bool translations = false;              ///< GpuOptions::translations
+};
+
+/// Keeps the device open; the fast sum where that takes less time.
+std::unique_ptr<PreparedPolyhedron> polyhedron(std::shared_ptr<engine::Gpu> gpu, const PolyhedronLayout& layout,
+                                               const PolyhedronProblem& problem);
 
 } // namespace cowgpu::gpu

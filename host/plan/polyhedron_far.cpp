@@ -72,18 +72,25 @@ void derive_multipoles(int order, const double* multipole, std::size_t sets, dou
   derive(order, multipole, sets, false, derived);
 }
 
-void FarSums::gather(const PlaceTree& targets, const TaskPairs& pairs) {
-  const std::span<const TreeCell> to = targets.cells, from = sources_->cells();
-  const int order = sources_->order();
+void FarSums::begin(const TaskPairs& pairs) {
   first_ = pairs.first;
-  locals_.assign((pairs.last - pairs.first) * densities * harmonics(order), 0.0);
-  for (int p = 0; p <= order; ++p) {
+  locals_.assign((pairs.last - pairs.first) * densities * harmonics(sources_->order()), 0.0);
+}
+
+void FarSums::translate(const PlaceTree& targets, const TaskPairs& pairs) {
+  const std::span<const TreeCell> to = targets.cells, from = sources_->cells();
+  for (int p = 0; p <= sources_->order(); ++p) {
     shifts_.clear();
     for (const CellPair& pair : pairs.to_locals[std::size_t(p)])
       shifts_.push_back(
           {sources_->multipoles(pair.source), local(pair.target), to[pair.target].centre - from[pair.source].centre});
     translations_->add(Translation::multipole_to_local, p, shifts_, room_);
   }
+}
+
+void FarSums::pass_down(const PlaceTree& targets, const TaskPairs& pairs) {
+  const std::span<const TreeCell> to = targets.cells;
+  const int order = sources_->order();
   // Level by level, so that many go together.
   std::vector<std::vector<std::uint32_t>> levels;
   for (std::uint32_t cell = pairs.first; cell < pairs.last; ++cell) {

@@ -17,8 +17,14 @@ public:
   FarSums(const PolyhedronSources& sources, const Translations& translations)
       : sources_(&sources), translations_(&translations), room_(translations.order()) {}
 
-  /// Multipoles to the locals of the task's cells, and these down to its leaves.
-  void gather(const PlaceTree& targets, const TaskPairs& pairs);
+  /// Makes locals of the task's cells: zeros.
+  void begin(const TaskPairs& pairs);
+  /// Adds what the pairs' multipoles make of them.
+  void translate(const PlaceTree& targets, const TaskPairs& pairs);
+  /// Of a cell of the task: [harmonic][density].
+  double* local(std::uint32_t cell) { return &locals_[(cell - first_) * densities * harmonics(sources_->order())]; }
+  /// The locals down to the task's leaves.
+  void pass_down(const PlaceTree& targets, const TaskPairs& pairs);
 
   /// Rows that add_leaf() adds to: V, grad V, w/4 pi; then, if `second`, dd V (xx, xy, xz, yy, yz, zz).
   static constexpr std::size_t first_rows = 5, second_rows = 11;
@@ -35,7 +41,6 @@ public:
   static std::uint64_t bytes(std::uint64_t points, std::uint32_t largest_leaf, int order);
 
 private:
-  double* local(std::uint32_t cell) { return &locals_[(cell - first_) * densities * harmonics(sources_->order())]; }
   void see_from(const Vec3& centre, const double* points, std::size_t count);
   void add(int order, const double* points, std::size_t count, const double* expanded, const double* factors,
            bool second, double* sums);

@@ -150,22 +150,30 @@ void StepLists::add(std::uint32_t first, std::uint32_t end) {
     ranges.push_back({first, end});
 }
 
+PointBox::PointBox(std::span<const Vec3> points) : low(points[0]), high(points[0]) {
+  for (const Vec3& point : points) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+}
+
+void DirectLists::add(const PolyhedronStrips& strips, std::size_t patch, const PointBox& points) {
+  const auto& box = strips.boxes[patch];
+  const Vec3 gap = (box.low - points.high).cwiseMax(points.low - box.high).cwiseMax(Vec3::Zero());
+  (gap.norm() > far_edges * box.longest ? far : near).add(strips.starts[patch], strips.starts[patch + 1]);
+}
+
+void DirectLists::end_group() {
+  near.end_group();
+  far.end_group();
+}
+
 DirectLists direct_lists(const PolyhedronStrips& strips, std::span<const Vec3> points, std::size_t size) {
   DirectLists lists;
   for (std::size_t begin = 0; begin < points.size(); begin += size) {
-    Vec3 low = points[begin], high = low;
-    for (std::size_t i = begin; i < std::min(points.size(), begin + size); ++i) {
-      low = low.cwiseMin(points[i]);
-      high = high.cwiseMax(points[i]);
-    }
-    for (std::size_t p = 0; p < strips.boxes.size(); ++p) {
-      const auto& box = strips.boxes[p];
-      const Vec3 gap = (box.low - high).cwiseMax(low - box.high).cwiseMax(Vec3::Zero());
-      const bool far = gap.norm() > far_edges * box.longest;
-      (far ? lists.far : lists.near).add(strips.starts[p], strips.starts[p + 1]);
-    }
-    lists.near.end_group();
-    lists.far.end_group();
+    const PointBox box(points.subspan(begin, std::min(size, points.size() - begin)));
+    for (std::size_t p = 0; p < strips.boxes.size(); ++p) lists.add(strips, p, box);
+    lists.end_group();
   }
   return lists;
 }

@@ -48,11 +48,21 @@ struct StepLists {
   void end_group() { starts.push_back(std::uint32_t(ranges.size())); }
 };
 
-/// All patches for groups of `size` points next to each other (the last may be smaller), in units: the near ones and the far
-/// ones.
+/// The box of points, of at least one.
+struct PointBox {
+  explicit PointBox(std::span<const Vec3> points);
+  Vec3 low, high;
+};
+
+/// Patches for groups of points: the near ones and the far ones.
 struct DirectLists {
   StepLists near, far;
+
+  /// Adds a patch to the group that is not ended yet, whose points lie in the box, in units.
+  void add(const PolyhedronStrips& strips, std::size_t patch, const PointBox& points);
+  void end_group();
 };
+/// All patches for groups of `size` points next to each other (the last may be smaller), in units.
 DirectLists direct_lists(const PolyhedronStrips& strips, std::span<const Vec3> points, std::size_t size);
 
 } // namespace cowgpu::plan

@@ -102,6 +102,17 @@ auto Translations::make_shift(Translation kind, int order) const -> Shift {
   return shift;
 }
 
+double Translations::multiply_adds(int order) const {
+  const auto of = [](const std::vector<Block>& blocks) {
+    double sum = 0;
+    for (const Block& block : blocks) sum += double(densities) * block.count * block.columns;
+    return sum;
+  };
+  double sum = of(shift(Translation::multipole_to_local, order).blocks);
+  for (std::size_t l = 0; l <= std::size_t(order); ++l) sum += 3 * of(exchanges_[l].flat) + of(exchanges_[l].upright);
+  return sum;
+}
+
 Translations::Room::Room(int order) : lines_(translation_room(order) / 8) {}
 
 std::size_t Translations::Room::bytes(int order) {

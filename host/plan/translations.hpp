@@ -79,6 +79,9 @@ public:
                                                          : between_locals_;
   }
 
+  /// Of one pair's multipole to local of this order, for all densities.
+  double multiply_adds(int order) const;
+
 private:
   void add_exchange(int l);
   Shift make_shift(Translation kind, int order) const;

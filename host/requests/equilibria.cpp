@@ -7,7 +7,6 @@
 #include "host/physics/zero_velocity.hpp"
 #include "host/report/result.hpp"
 #include "host/requests/body_measures.hpp"
-#include "host/requests/fast_sum.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -61,7 +60,7 @@ EquilibriaResult::ZeroVelocity zero_velocity(const ZeroVelocityRequest& r, const
 
 } // namespace
 
-EquilibriaResult equilibria(const EquilibriaRequest& request, Backend& asked, Monitor& monitor) {
+EquilibriaResult equilibria(const EquilibriaRequest& request, Backend& backend, Monitor& monitor) {
   check_request(request);
   BodyRequest placed = request.body;
   if (request.mass) placed.density = 1; // until the volume is known
@@ -86,10 +85,6 @@ EquilibriaResult equilibria(const EquilibriaRequest& request, Backend& asked, Mo
   problem.spin = s.spin;
   problem.smallest = request.smallest;
   problem.most_places = request.cells;
-  const auto cpu =
-      fast_sum_backend(body, problem.tolerance, Derivatives::second, request.cells, asked, request.threads);
-  const Backend& backend = cpu ? *cpu : asked;
-  if (cpu) s.subject.notes.push_back(fast_sum_note(asked));
   check_memory(equilibria_memory(body, problem, backend), backend, "allow fewer --cells");
   s.equilibria = equilibria(body, problem, backend, monitor);
   if (request.surface) s.zero_velocity = zero_velocity(*request.surface, body, s, backend, monitor);

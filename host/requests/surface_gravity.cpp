@@ -6,7 +6,6 @@
 #include "host/physics/body_field.hpp"
 #include "host/report/result.hpp"
 #include "host/requests/body_measures.hpp"
-#include "host/requests/fast_sum.hpp"
 #include "host/requests/memory.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +22,8 @@ using namespace physics;
 
 namespace {
 
-constexpr double largest_height = 1e6; // in Brillouin radii: beyond it slopes and elevations are rounding
+constexpr std::uint64_t many_places = 20000; // from which on a second or more is lost
+constexpr double largest_height = 1e6;       // in Brillouin radii: beyond it slopes and elevations are rounding
 
 [[noreturn]] void refuse(const std::string& sentence) {
   throw Error(Fault::bad_argument, sentence);
@@ -123,10 +123,6 @@ std::vector<std::pair<std::string, std::string>> facts_of(const SurfaceGravityRe
 
 } // namespace
 
-std::unique_ptr<Backend> SurfaceGravityPlan::own_backend(const Backend& asked) const {
-  return fast_sum_backend(body(), request.tolerance, Derivatives::first, places, asked, request.threads);
-}
-
 MemoryNeed SurfaceGravityPlan::memory(const Backend& backend) const {
   MemoryNeed need = BodyField(body(), field_problem(request), backend).memory(places);
   // Places, normals and areas, gravity as vectors beside the columns, the mesh once more in the result.
@@ -166,11 +162,10 @@ SurfaceGravityPlan plan_surface_gravity(SurfaceGravityRequest request, Monitor& 
   return plan;
 }
 
-SurfaceGravityResult surface_gravity(SurfaceGravityPlan plan, Backend& asked, Monitor& monitor) {
-  const auto cpu = plan.own_backend(asked);
-  const Backend& backend = cpu ? *cpu : asked;
+SurfaceGravityResult surface_gravity(SurfaceGravityPlan plan, Backend& backend, Monitor& monitor) {
   check_memory(plan.memory(backend), backend, "take a coarser mesh, or fewer points");
-  if (cpu) plan.loaded.notes.push_back(fast_sum_note(asked));
+  if (backend.facts().type == "software" && plan.places > many_places)
+    plan.loaded.notes.push_back("a software device sums polyhedra several times slower than --device cpu");
   SurfaceGravityResult s;
   s.subject = subject(plan.loaded);
   const Body& body = plan.body();

@@ -45,10 +45,7 @@ struct SurfaceGravityPlan {
 
   const Body& body() const { return *loaded.mesh; }
 
-  /// As fast_sum_backend() has it.
-  std::unique_ptr<Backend> own_backend(const Backend& asked) const;
-
-  /// What surface_gravity() allocates at most, and the caller beside it, on the backend that sums.
+  /// What surface_gravity() allocates at most, and the caller beside it.
   MemoryNeed memory(const Backend& backend) const;
 };
 

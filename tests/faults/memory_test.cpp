@@ -133,6 +133,16 @@ std::vector<Call> calls() {
                      transform->analyse(fields, values, a.values, silent_monitor());
                    }});
   }
+  for (const auto& [mesh, count] : {std::pair(&large, 4'000), std::pair(&small, 50'000)}) {
+    const std::vector<Vec3> points = scattered(std::size_t(count));
+    PolyhedronProblem asked;
+    asked.vertices = mesh->vertices;
+    asked.faces = mesh->faces;
+    asked.tolerance = 1e-9;
+    all.push_back({named("fast sums of polyhedra, points", *mesh, count),
+                   [=](const Backend& b) { return b.polyhedron(asked)->memory(points.size()); },
+                   [=](const Backend& b) { b.polyhedron(asked)->at(points, silent_monitor()); }});
+  }
   for (const auto& [mesh, lmax] : {std::pair(&large, 20), std::pair(&small, 300)}) {
     const SphereGrid grid = make_grid(GridKind::gauss_legendre, lmax);
     std::vector<Vec3> unit = mesh->vertices;
@@ -214,13 +224,15 @@ TEST_CASE("a check of moments allocates no more than it says", "[memory]") {
   }
 }
 
-TEST_CASE("moments and transforms allocate on the device no more than they say", "[memory][vulkan]") {
+TEST_CASE("moments, transforms and fast sums allocate on the device no more than they say", "[memory][vulkan]") {
   const auto gpu = gpu_backend();
   if (!gpu) return skip_without_gpu();
   const auto run_all = calls();
   VulkanFaults counts;
   for (const Call& call : run_all) {
-    if (!call.name.starts_with("moments") && !call.name.starts_with("transforms to degree 120")) continue;
+    if (!call.name.starts_with("moments") && !call.name.starts_with("transforms to degree 120") &&
+        !call.name.starts_with("fast sums"))
+      continue;
     INFO(call.name);
     const auto before = counts.live_memory();
     counts.disarm();

@@ -6,12 +6,12 @@
 #include "host/plan/polyhedron_settings.hpp"
 #include "host/plan/polyhedron_tree.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/polyhedron_errors.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 using namespace cowgpu;
@@ -19,61 +19,14 @@ using namespace cowgpu::test;
 
 namespace {
 
-std::vector<Vec3> centroids(const RawMesh& mesh) {
-  std::vector<Vec3> found;
-  for (const Face& f : mesh.faces)
-    found.push_back((mesh.vertices[f[0]] + mesh.vertices[f[1]] + mesh.vertices[f[2]]) / 3);
-  return found;
-}
-
-double volume(const RawMesh& mesh) {
-  double sum = 0;
-  for (const Face& f : mesh.faces) sum += mesh.vertices[f[0]].dot(mesh.vertices[f[1]].cross(mesh.vertices[f[2]])) / 6;
-  return sum;
-}
-
-PolyhedronProblem problem(const RawMesh& mesh, double tolerance, Derivatives derivatives = Derivatives::first,
-                          bool guarantee = false) {
-  PolyhedronProblem made;
-  made.vertices = mesh.vertices;
-  made.faces = mesh.faces;
-  made.tolerance = tolerance;
-  made.derivatives = derivatives;
-  made.guarantee = guarantee;
-  return made;
-}
-
 PolyhedronValues direct(const RawMesh& mesh, const std::vector<Vec3>& points,
                         Derivatives derivatives = Derivatives::first) {
-  return make_cpu_backend()->polyhedron(problem(mesh, 0, derivatives))->at(points, silent_monitor());
+  return make_cpu_backend()->polyhedron(fast_problem(mesh, 0, derivatives))->at(points, silent_monitor());
 }
 
 PolyhedronValues fast(const PolyhedronProblem& asked, const std::vector<Vec3>& points, RunReport* report = nullptr,
                       unsigned threads = 0) {
   return cpu::fast_polyhedron(asked, threads)->at(points, silent_monitor(), report);
-}
-
-// Errors over the tolerance's scale: of the gradient over v/R^2, of V over v/R.
-struct Errors {
-  double gradient = 0, value = 0, winding = 0, bound = 0;
-  bool bounded = true;
-};
-Errors errors(const RawMesh& mesh, const PolyhedronValues& found, const PolyhedronValues& truth) {
-  const double v = volume(mesh), radius = std::cbrt(0.75 * v * std::numbers::inv_pi), weight = v / (radius * radius);
-  Errors worst;
-  for (std::size_t i = 0; i < truth.field.value.size(); ++i) {
-    const double error = (found.field.gradient[i] - truth.field.gradient[i]).norm();
-    const double value = std::abs(found.field.value[i] - truth.field.value[i]) * radius / v;
-    const double winding = std::abs(found.winding[i] - truth.winding[i]);
-    if (!(error / weight <= worst.gradient)) worst.gradient = error / weight;
-    if (!(value <= worst.value)) worst.value = value;
-    if (!(winding <= worst.winding)) worst.winding = winding;
-    if (found.bound.empty()) continue;
-    // Rounding, which bounds leave out, is some units of 1e-16.
-    worst.bounded = worst.bounded && error <= found.bound[i] + 3e-14 * weight;
-    worst.bound = std::max(worst.bound, found.bound[i] / weight);
-  }
-  return worst;
 }
 
 // At each face's centroid, for each tolerance with and without a guarantee.
@@ -82,11 +35,12 @@ void check_everywhere(const RawMesh& mesh) {
   const PolyhedronValues truth = direct(mesh, points);
   for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
     INFO("tolerance " << tolerance << ", " << mesh.faces.size() << " faces");
-    const Errors plain = errors(mesh, fast(problem(mesh, tolerance), points), truth);
+    const FieldErrors plain = field_errors(mesh, fast(fast_problem(mesh, tolerance), points), truth);
     CHECK(plain.gradient < tolerance);
     CHECK(plain.value < tolerance);
     CHECK(plain.winding < 1000 * tolerance);
-    const Errors proven = errors(mesh, fast(problem(mesh, tolerance, Derivatives::first, true), points), truth);
+    const FieldErrors proven =
+        field_errors(mesh, fast(fast_problem(mesh, tolerance, Derivatives::first, true), points), truth);
     CHECK(proven.gradient < tolerance);
     CHECK(proven.bound <= tolerance);
     CHECK(proven.bounded);
@@ -115,8 +69,9 @@ TEST_CASE("the fast sum keeps its tolerance on bodies too thin for single precis
     const std::vector<Vec3> points = centroids(mesh);
     const PolyhedronValues truth = direct(mesh, points);
     INFO("axes " << axes.transpose());
-    CHECK(errors(mesh, fast(problem(mesh, 1e-6), points), truth).gradient < 1e-6);
-    const Errors proven = errors(mesh, fast(problem(mesh, 1e-6, Derivatives::first, true), points), truth);
+    CHECK(field_errors(mesh, fast(fast_problem(mesh, 1e-6), points), truth).gradient < 1e-6);
+    const FieldErrors proven =
+        field_errors(mesh, fast(fast_problem(mesh, 1e-6, Derivatives::first, true), points), truth);
     CHECK(proven.gradient < 1e-6);
     CHECK(proven.bounded);
   }
@@ -126,13 +81,10 @@ TEST_CASE("second derivatives of the fast sum are those of the direct one", "[po
   const RawMesh mesh = builtin_mesh("cow@1");
   const std::vector<Vec3> points = centroids(mesh);
   const PolyhedronValues truth = direct(mesh, points, Derivatives::second);
-  const PolyhedronValues found = fast(problem(mesh, 1e-9, Derivatives::second), points);
-  double worst = 0;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (std::size_t k = 0; k < 6; ++k)
-      worst = std::max(worst, std::abs(found.field.hessian[i][k] - truth.field.hessian[i][k]));
-  CHECK(worst < 1e-7);
-  CHECK(errors(mesh, found, truth).gradient < 1e-9);
+  const PolyhedronValues found = fast(fast_problem(mesh, 1e-9, Derivatives::second), points);
+  const FieldErrors worst = field_errors(mesh, found, truth);
+  CHECK(worst.hessian < 1e-7);
+  CHECK(worst.gradient < 1e-9);
 }
 
 TEST_CASE("the fast sum is right inside, far away, on vertices, and where points coincide", "[polyhedron_fast]") {
@@ -148,8 +100,8 @@ TEST_CASE("the fast sum is right inside, far away, on vertices, and where points
        {mesh.vertices, scattered, along, distant, std::vector<Vec3>(1000, Vec3(0.1, 0.1, 0.1)),
         std::vector<Vec3>(1, Vec3(0, 0, 0))}) {
     const PolyhedronValues truth = direct(mesh, points);
-    const PolyhedronValues found = fast(problem(mesh, 1e-9), points);
-    const Errors worst = errors(mesh, found, truth);
+    const PolyhedronValues found = fast(fast_problem(mesh, 1e-9), points);
+    const FieldErrors worst = field_errors(mesh, found, truth);
     CHECK(worst.gradient < 1e-9);
     CHECK(worst.value < 1e-9);
     for (std::size_t i = 0; i < points.size(); ++i) // far away too
@@ -164,8 +116,8 @@ TEST_CASE("bodies of several shells, and whole numbers of turns, go through the 
   for (const RawMesh& mesh : {overlapping, hollow}) {
     std::vector<Vec3> points = centroids(mesh);
     points.emplace_back(0.1, 0.1, 0.1);
-    const PolyhedronValues truth = direct(mesh, points), found = fast(problem(mesh, 1e-9), points);
-    const Errors worst = errors(mesh, found, truth);
+    const PolyhedronValues truth = direct(mesh, points), found = fast(fast_problem(mesh, 1e-9), points);
+    const FieldErrors worst = field_errors(mesh, found, truth);
     CHECK(worst.gradient < 1e-9);
     CHECK(worst.winding < 1e-6);
   }
@@ -174,7 +126,7 @@ TEST_CASE("bodies of several shells, and whole numbers of turns, go through the 
 TEST_CASE("bits of the fast sum do not depend on the number of threads", "[polyhedron_fast]") {
   const RawMesh mesh = builtin_mesh("cow@2");
   std::vector<Vec3> points = centroids(mesh);
-  const PolyhedronProblem asked = problem(mesh, 1e-9, Derivatives::second, true);
+  const PolyhedronProblem asked = fast_problem(mesh, 1e-9, Derivatives::second, true);
   const PolyhedronValues one = fast(asked, points, nullptr, 1), three = fast(asked, points, nullptr, 3);
   CHECK(one.field.value == three.field.value);
   CHECK(one.field.gradient == three.field.gradient);
@@ -189,7 +141,7 @@ TEST_CASE("work and memory of the fast sum grow as faces and points do", "[polyh
     const RawMesh mesh = builtin_mesh(body);
     const std::vector<Vec3> points = centroids(mesh);
     RunReport report;
-    const PolyhedronProblem asked = problem(mesh, 1e-6);
+    const PolyhedronProblem asked = fast_problem(mesh, 1e-6);
     const auto prepared = cpu::fast_polyhedron(asked, 0);
     prepared->at(points, silent_monitor(), &report);
     const double work = report.elements / double(points.size());
@@ -222,21 +174,21 @@ TEST_CASE("trees stay shallow whatever the places are", "[polyhedron_fast]") {
 TEST_CASE("the fast sum is taken where it pays, refuses nonsense and stops", "[polyhedron_fast]") {
   const RawMesh mesh = builtin_mesh("cow@1");
   const std::vector<Vec3> points = centroids(mesh);
-  CHECK_FALSE(plan::fast_sum_pays(problem(mesh, 1e-9), 1));
-  CHECK_FALSE(plan::fast_sum_pays(problem(mesh, 0), 1000000000));
-  PolyhedronProblem large = problem(mesh, 1e-9);
+  CHECK_FALSE(plan::fast_sum_pays(fast_problem(mesh, 1e-9), 1));
+  CHECK_FALSE(plan::fast_sum_pays(fast_problem(mesh, 0), 1000000000));
+  PolyhedronProblem large = fast_problem(mesh, 1e-9);
   const std::vector<Face> many(1000000);
   large.faces = many;
   CHECK(plan::fast_sum_pays(large, 1000000));
   CHECK_FALSE(plan::fast_sum_pays(large, 8));
 
   for (const double tolerance : {-1e-9, 1e-13, 0.1, std::nan("")}) {
-    CHECK_THROWS_AS(fast(problem(mesh, tolerance), points), Error);
-    CHECK_THROWS_AS(make_cpu_backend()->polyhedron(problem(mesh, tolerance))->at(points, silent_monitor()), Error);
+    CHECK_THROWS_AS(fast(fast_problem(mesh, tolerance), points), Error);
+    CHECK_THROWS_AS(make_cpu_backend()->polyhedron(fast_problem(mesh, tolerance))->at(points, silent_monitor()), Error);
   }
-  CHECK_THROWS_AS(fast(problem(mesh, 1e-9), {Vec3(0, 0, std::nan(""))}), Error);
+  CHECK_THROWS_AS(fast(fast_problem(mesh, 1e-9), {Vec3(0, 0, std::nan(""))}), Error);
   struct : Monitor {
     bool stopped() const override { return true; }
   } impatient;
-  CHECK_THROWS_AS(cpu::fast_polyhedron(problem(mesh, 1e-9), 0)->at(points, impatient), Error);
+  CHECK_THROWS_AS(cpu::fast_polyhedron(fast_problem(mesh, 1e-9), 0)->at(points, impatient), Error);
 }
