@@ -81,7 +81,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> nouns = {
 // Headers of host/ that only some rooms may see.
 const std::map<std::string, std::set<std::string>> seen_by = {
     {"counted", {"host/io", "host/mesh"}},
-    {"flush_denormals", {"host/cpu", "host/gpu"}},
+    {"flush_denormals", {"host/cpu", "host/gpu", "host/plan"}},
     {"moment_terms", {"host/cpu", "host/mass", "host/requests"}},
     {"signals", {"host", "host/io", "host/map", "host/cli"}},
     {"thread_pool", {"host", "host/cpu"}},

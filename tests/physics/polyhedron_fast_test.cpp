@@ -177,7 +177,8 @@ TEST_CASE("the fast sum is taken where it pays, refuses nonsense and stops", "[p
   CHECK_FALSE(plan::fast_sum_pays(fast_problem(mesh, 1e-9), 1));
   CHECK_FALSE(plan::fast_sum_pays(fast_problem(mesh, 0), 1000000000));
   PolyhedronProblem large = fast_problem(mesh, 1e-9);
-  const std::vector<Face> many(1000000);
+  std::vector<Face> many;
+  while (many.size() < 1000000) many.insert(many.end(), mesh.faces.begin(), mesh.faces.end());
   large.faces = many;
   CHECK(plan::fast_sum_pays(large, 1000000));
   CHECK_FALSE(plan::fast_sum_pays(large, 8));
