@@ -30,8 +30,8 @@ struct PolyhedronProblem {
   std::span<const Face> faces; ///< counter-clockwise seen from outside; faces without area have no field
   Derivatives derivatives = Derivatives::first;
   FaceSide side = FaceSide::mean;
-  /// 0: all faces are summed, right to rounding. Else the CPU sums groups of faces far away by their multipoles where that takes
-  /// less time, and a device sums all faces as before. The error of the gradient is meant to stay below this part of v/R^2 at each
+  /// 0: all faces are summed, right to rounding. Else groups of faces far away are summed by their multipoles where that takes
+  /// less time, on a device as on the CPU. The error of the gradient is meant to stay below this part of v/R^2 at each
   /// point, v the volume and R the radius of the ball with that volume, and that of V below this part of v/R: so it was at each
   /// place of the bodies that were tried (bench/polyhedron_fast.md); without the guarantee nothing is proven.
   double tolerance = 0;

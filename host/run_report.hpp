@@ -15,7 +15,7 @@ struct RunReport {
   double elements = 0;             ///< (l, m) entries evaluated, summed over pairs of triangles
   double full_elements = 0;        ///< the same without the cut-off
   std::uint64_t pairs = 0;         ///< pairs (and leftover single triangles) of the plan, or pairs of cells
-  double multiply_adds = 0; ///< of translations of expansions, in the fast sum of a polyhedron
+  double multiply_adds = 0;        ///< of translations of expansions, in the fast sum of a polyhedron
   std::vector<KernelTime> kernels; ///< empty on the CPU path
 };
 

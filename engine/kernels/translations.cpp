@@ -23,7 +23,7 @@ static_assert(std::uint32_t(TranslationStep::multiply) == TRANSLATIONS_MULTIPLY 
 using Texel = std::array<std::uint32_t, 4>;
 constexpr std::uint64_t vector_bytes = 8 * translation_densities, run_bytes = 16, pair_bytes = 32;
 constexpr std::uint32_t sum_width = 128;
-constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20;        // of a buffer: every device binds so many
+constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20; // largest buffer: every device binds so many bytes
 constexpr std::uint64_t most_software_bytes = std::uint64_t(8) << 20; // in the caches of processors
 constexpr std::uint64_t most_at_once = 1 << 16;                       // pairs
 

@@ -32,7 +32,7 @@ struct TranslationRecord {
 struct TranslationsInput {
   std::span<const double> matrix;
   std::span<const std::vector<TranslationRecord>> orders; ///< [order]
-  std::uint32_t places = 0;                               ///< of a lane's room
+  std::uint32_t places = 0;                               ///< size of a lane's room
   std::uint32_t iteration_budget = 60000;                 ///< loop iterations an invocation may run in one dispatch
 };
 

@@ -126,7 +126,6 @@ Solve add_equilibria(Command& command, Common& common, BodyOptions&) {
     check_outputs(call, *options);
     SurfaceOutputs outputs(options->output, "", 1, "surface");
     EquilibriaRequest request = request_of(call, *options);
-    request.threads = common.threads;
     if (outputs.any()) outputs.open({"", ""});
     std::string note;
     const auto backend = open_backend(common, &note);

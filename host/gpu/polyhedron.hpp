@@ -14,7 +14,7 @@ void take_sums(const double* from, std::size_t from_stride, std::size_t rows, do
 
 /// How a device sums.
 struct PolyhedronLayout {
-  engine::MomentsShape moments;           ///< of those that points far away need
+  engine::MomentsShape moments;           ///< layout of the moments that points far away need
   std::uint32_t iteration_budget = 60000; ///< GpuOptions::iteration_budget
   bool translations = false;              ///< GpuOptions::translations
 };

@@ -29,8 +29,8 @@ using Rows = plan::PolyhedronRows;
 constexpr std::size_t group_points = engine::polyhedron_points;
 static_assert(plan::largest_tree_leaf <= group_points); // a leaf is a group
 constexpr std::size_t batch_tasks = 4;                  // so that the device is busy while the host does as many
-// Software devices take translations and roots from the processors that the host has, at a fourth of its rate: the host keeps
-// translations to itself there, and cells of points are smaller, so that there are more of them and less faces near by.
+// Software devices run on the processors that the host has, several times slower: the host keeps translations to itself there,
+// and the leaves of points are smaller, so that more pairs of cells are translated and fewer faces are near.
 constexpr std::uint32_t software_leaf = 32;
 
 bool is_software(const engine::Gpu& gpu) {
@@ -70,7 +70,7 @@ struct FastPrepared {
   plan::PolyhedronStrips strips; // without its steps, which are on the device
   std::unique_ptr<engine::Polyhedron> near;
   std::unique_ptr<engine::Translations> far;            // none where the host does what it does
-  std::uint32_t largest_leaf = plan::largest_tree_leaf; // of points
+  std::uint32_t largest_leaf = plan::largest_tree_leaf; // largest leaf of the tree of points
   std::vector<std::uint32_t> number;                    // [source cell]: among those of one call of far->add()
 };
 
@@ -305,7 +305,7 @@ void FastPolyhedron::finish_batch(const FastPoints& points, const TaskBatch& bat
     for (std::uint32_t leaf = task.first; leaf < task.last; ++leaf) {
       const plan::TreeCell& cell = targets.cells[leaf];
       if (!cell.leaf()) continue;
-      const plan::LeafColumns own = room.columns(points, cell, 8, second() ? Rows::second : Rows::first);
+      const plan::LeafColumns own = room.columns(points, cell, plan::tree_group, second() ? Rows::second : Rows::first);
       const double* sums = &batch.sums[at * rows * group_points];
       for (std::size_t i = 0; i < cell.count(); ++i) take_sums(sums + i, group_points, rows, own.sums + i, own.count);
       far.add_leaf(targets, task, leaf, own.points, own.count, second(), own.sums);

@@ -52,7 +52,7 @@ struct FastPoints {
   std::vector<std::uint32_t> farthest; ///< so far away that the body is a point
   std::vector<std::uint32_t> far;      ///< where the multipoles of all faces together are enough
   std::optional<PlaceTree> targets;    ///< the others; `order` has indices of all points
-  std::vector<Vec3> points;            ///< of the tree, in its order, in units
+  std::vector<Vec3> points;            ///< the tree's points in its order, in units
   std::vector<std::uint32_t> tasks;    ///< roots of subtrees
   PairTolerance tolerance;
   double limit; ///< largest bound of the gradient's truncation that is allowed where it is guaranteed, in units

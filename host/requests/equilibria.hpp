@@ -31,7 +31,6 @@ struct EquilibriaRequest {
   double smallest = 1e-4;        ///< as physics::EquilibriaProblem has these
   std::uint64_t cells = 1'000'000;
   std::optional<ZeroVelocityRequest> surface;
-  unsigned threads = 0;           ///< threads of what is done on the host; 0: all
   std::vector<std::string> notes; ///< sentences that come after those about the body
 };
 

@@ -8,7 +8,6 @@
 #include "host/units.hpp"
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <random>
 
 using namespace cowgpu;
@@ -64,6 +65,28 @@ TEST_CASE("the fast sum on a device keeps its tolerance at every face of a large
   const PolyhedronValues truth = polyhedron(*make_cpu_backend(), fast_problem(mesh, 0), points);
   for (const auto& gpu : devices())
     for (const bool guarantee : {false, true}) check_tolerance(*gpu, mesh, points, truth, 1e-9, guarantee);
+}
+
+TEST_CASE("the fast sum on a device keeps its tolerance on thin, hollow, star-shaped and distant bodies",
+          "[polyhedron_fast][vulkan]") {
+  if (!gpu_backend()) return skip_without_gpu();
+  const auto scaled_by = [](const Vec3& axes) {
+    RawMesh mesh = icosphere(3);
+    for (Vec3& v : mesh.vertices) v = v.cwiseProduct(axes);
+    return mesh;
+  };
+  RawMesh star = icosphere(3);
+  for (Vec3& v : star.vertices) v *= 1 + 0.6 * std::sin(9 * v.x()) * std::sin(7 * v.y());
+  const RawMesh hollow = together(icosphere(3), flipped(scaled_by(Vec3::Constant(0.99))));
+  for (const RawMesh& mesh : {scaled_by({1, 1, 1e-6}), scaled_by({1, 1e-3, 1e-3}), hollow, star,
+                              translated(icosphere(3), {1e5, -2e4, 3e4})}) {
+    const std::vector<Vec3> points = centroids(mesh);
+    const PolyhedronValues truth = polyhedron(*make_cpu_backend(), fast_problem(mesh, 0), points);
+    for (const auto& gpu : devices()) {
+      check_tolerance(*gpu, mesh, points, truth, 1e-6, true);
+      check_tolerance(*gpu, mesh, points, truth, 1e-9, false);
+    }
+  }
 }
 
 TEST_CASE("the fast sum on a device is right inside, far away, on vertices, and gives second derivatives",
