@@ -31,9 +31,10 @@ struct PolyhedronProblem {
   Derivatives derivatives = Derivatives::first;
   FaceSide side = FaceSide::mean;
   /// 0: all faces are summed, right to rounding. Else groups of faces far away are summed by their multipoles where that takes
-  /// less time, on a device as on the CPU. The error of the gradient is meant to stay below this part of v/R^2 at each
-  /// point, v the volume and R the radius of the ball with that volume, and that of V below this part of v/R: so it was at each
-  /// place of the bodies that were tried (bench/polyhedron_fast.md); without the guarantee nothing is proven.
+  /// less time, on a device as on the CPU. The error of the gradient is meant to stay below this part of v/R^2 at each point, v the
+  /// volume and R the radius of the ball with that volume, and that of V below the same times the radius of the body, which is R
+  /// of a ball and far more of a thin body: so it was at each place of the bodies that were tried (bench/polyhedron_fast.md);
+  /// without the guarantee nothing is proven.
   double tolerance = 0;
   /// What the multipoles leave out of the gradient is proven to be below the tolerance at each point, and each point's bound is
   /// given. Covers neither rounding nor V.

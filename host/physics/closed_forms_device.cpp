@@ -90,7 +90,6 @@ public:
       whole += std::abs(part.density) * own;
     }
     const double share = whole > 0 ? problem.tolerance * std::min(1.0, gravity_scale(body) / whole) : 0;
-    double radius = 0;
     far_reach_ = 4 * Real(middle(body).radius);
     for (const DenseSurface& part : surfaces_) {
       PolyhedronProblem one{part.surface->vertices(), part.surface->faces()};
@@ -99,10 +98,10 @@ public:
       one.guarantee = problem.guarantee;
       tolerance_ = one.tolerance;
       parts_.push_back({backend.polyhedron(one), part.density});
-      radius = std::max(radius, ball_radius(part.volume));
     }
     left_out_.gradient = tolerance_ * whole;
-    left_out_.value = left_out_.gradient * radius;
+    // V holds the product of the gradient and the way from the body's middle, which is long beside a thin body's v/R^2.
+    left_out_.value = left_out_.gradient * double(middle(body).radius);
   }
 
   // Beyond 3 radii the device takes each surface's multipoles (host/plan/polyhedron_call.hpp), whose errors fall as the field.
